@@ -1,5 +1,7 @@
 #include "sim/picture_voice.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <string_view>
 #include <utility>
@@ -11,6 +13,8 @@ namespace {
 
 constexpr double kRadian = std::numbers::pi / 180.0;
 constexpr int kJpegQuality = 88;
+constexpr double kPiece_px = 2.5;
+constexpr int kMostPieces = 6;  ///< 3 ms each
 constexpr std::string_view kEndOfHead = "\r\n\r\n";
 
 world::Frame mount_of(const world::SensorParams& p) {
@@ -42,23 +46,36 @@ std::vector<std::uint8_t> PictureVoice::receive(base::Bytes bytes) {
   return {kHead.begin(), kHead.end()};
 }
 
+/// In as many pieces as it is blurred: standing, one.
+void PictureVoice::expose(const Surroundings& around, double until_s) {
+  const auto camera_at = [&](double at_s) { return world::Frame(around.pose_at(at_s)) * mount_; };
+  const double blur_px =
+      painter_.blur_px(camera_at(until_s - params_.exposure_s), camera_at(until_s));
+  const int pieces = std::clamp(static_cast<int>(std::ceil(blur_px / kPiece_px)), 1, kMostPieces);
+  for (int i = 0; i < pieces; ++i) {
+    const double at_s = until_s - params_.exposure_s * (1.0 - (i + 0.5) / pieces);
+    around.scene().move_to(moment_, at_s);
+    painter_.expose(around.scene(), moment_, camera_at(at_s));
+  }
+}
+
 std::vector<std::uint8_t> PictureVoice::say(const Surroundings& around, const world::Sweep& sweep,
                                             const world::SensorFaults& faults) {
   if (!speaks_) return {};
+  world::Draw draw(sweep.count + 1);
   if (!faults.sensor_freeze || picture_.empty()) {
-    around.scene().move_to(moment_, sweep.at_s);
-    const world::Frame camera = world::Frame(around.pose_at(sweep.at_s)) * mount_;
-    const auto& grey = painter_.paint(around.scene(), moment_, camera, sweep.count);
+    expose(around, sweep.at_s);
+    const auto& grey = painter_.develop(sweep.count, faults.glare);
     auto made =
         camera::jpeg_of_grey(grey, params_.columns, params_.rows, params_.columns, kJpegQuality);
     if (!made) return {};
     picture_ = std::move(*made);
   }
   std::vector<std::uint8_t> body = picture_;
-  world::Draw draw(sweep.count + 1);
   if (draw.uniform() < faults.sensor_malformed) {
     for (std::uint8_t& byte : body) byte = static_cast<std::uint8_t>(draw.below(256));
   }
+  if (draw.uniform() < faults.sensor_dropout) return {};
   const std::string head =
       "--picture\r\nContent-Type: image/jpeg\r\nContent-Length: " + std::to_string(body.size()) +
       "\r\n\r\n";

@@ -20,12 +20,14 @@ class PictureVoice {
 
   /// Bytes from a client. @return the head of the answer, once it has asked; the parts follow.
   std::vector<std::uint8_t> receive(base::Bytes bytes);
-  /// One part of the stream; empty: nobody asked yet. Frozen, it is the last one again; malformed,
-  /// some of it is no picture.
+  /// One part of the stream; empty: nobody asked yet, or it is lost. Frozen, it is the last one
+  /// again; malformed, some of it is no picture. Its moment is the end of its exposure.
   std::vector<std::uint8_t> say(const Surroundings& around, const world::Sweep& sweep,
                                 const world::SensorFaults& faults);
 
  private:
+  void expose(const Surroundings& around, double until_s);
+
   const world::SensorParams params_;
   const world::Frame mount_;
   world::Painter painter_;

@@ -1,7 +1,10 @@
 // The drawn view, looked at by the finder of tags: where it sees a tag is where the world says that
 // it stands.
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -30,7 +33,8 @@ Thing tag_at(Vec2 at, double yaw_rad, int id, double height_m = 0.6, double size
 struct View {
   explicit View(World world) : scene(std::move(world)), moment(scene.at(0.0)) {}
   const std::vector<std::uint8_t>& from(const Pose& camera) {
-    return painter.paint(scene, moment, Frame(camera), 1);
+    painter.expose(scene, moment, Frame(camera));
+    return painter.develop(1, 0.0);
   }
   std::vector<nav::tags::Tag> tags_from(const Pose& camera, double size_m = 0.16) {
     const double f = kColumns / 2.0 / std::tan(kFov_rad / 2.0);
@@ -105,10 +109,50 @@ TEST(Painter, NearThingsCoverFarOnesAndTheSkyIsAboveTheGround) {
   EXPECT_LT(at(10, 470), 150) << "ground";
 }
 
+TEST(Painter, OfTwoTagsInALineTheNearerOneCoversTheFarOne) {
+  const Thing far = tag_at({3.0, 0.0}, std::numbers::pi, 3, 0.6, 0.2);
+  const Thing near = tag_at({2.0, 0.0}, std::numbers::pi, 4, 0.6, 0.2);
+  for (const World& world : {world_of({far, near}), world_of({near, far})}) {
+    const auto tags = View(world).tags_from({.z_m = 0.6}, 0.2);
+    ASSERT_EQ(tags.size(), 1U);
+    EXPECT_EQ(tags[0].id, 4);
+  }
+}
+
+TEST(Painter, WhatMovesWhileTheShutterIsOpenIsBlurredAndLiesInTheMiddle) {
+  View view(world_of({tag_at({2.0, 0.0}, std::numbers::pi, 3)}));
+  // The camera turns by 0.5 degrees: 4 pixels.
+  for (const double turned_deg : {0.0, 0.125, 0.25, 0.375, 0.5}) {
+    view.painter.expose(view.scene, view.moment,
+                        Frame(Pose{.z_m = 0.6, .yaw_rad = turned_deg * kTurn}));
+  }
+  const std::vector<std::uint8_t> blurred = view.painter.develop(1, 0.0);
+  const double f = kColumns / 2.0 / std::tan(kFov_rad / 2.0);
+  const auto tags = nav::tags::Finder().find({kColumns, kRows, kColumns, blurred},
+                                             {f, f, kColumns / 2.0, kRows / 2.0}, {});
+  ASSERT_TRUE(tags);
+  ASSERT_EQ(tags->size(), 1U);
+  EXPECT_NEAR(std::atan2(tags->front().place.y(), tags->front().place.x()) / kTurn, -0.25, 0.05);
+  const auto sharp = view.tags_from({.z_m = 0.6});
+  EXPECT_LT(tags->front().margin, 0.9 * sharp.at(0).margin);
+}
+
+TEST(Painter, GlareTakesItsShareOfTheContrast) {
+  View view(world_of({tag_at({2.0, 0.0}, std::numbers::pi, 3)}));
+  const auto span_of = [&](double glare) {
+    view.painter.expose(view.scene, view.moment, Frame(Pose{.z_m = 0.6}));
+    const auto& grey = view.painter.develop(1, glare);
+    const auto [low, high] = std::ranges::minmax(grey);
+    return static_cast<double>(high - low);
+  };
+  EXPECT_NEAR(span_of(0.75), 0.25 * span_of(0.0), 8.0);
+}
+
 TEST(Painter, TheSameMomentIsTheSamePictureButForItsNoise) {
   View view(world_of({tag_at({3.0, 0.0}, std::numbers::pi, 3)}));
   const auto scene_at = [&](std::uint64_t number) {
-    return view.painter.paint(view.scene, view.moment, Frame(Pose{.z_m = 0.5}), number);
+    view.painter.expose(view.scene, view.moment, Frame(Pose{.z_m = 0.5}));
+    return view.painter.develop(number, 0.0);
   };
   const auto first = scene_at(1);
   EXPECT_EQ(scene_at(1), first);

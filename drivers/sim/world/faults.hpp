@@ -17,6 +17,7 @@ struct SensorFaults {
   double sensor_malformed = 0.0;
   double sensor_dropout = 0.0;
   double sensor_noise_m = 0.0;
+  double glare = 0.0;
   double dirt_from_deg = 0.0;
   double dirt_to_deg = 0.0;
   double dirt_share = 0.0;
@@ -40,8 +41,11 @@ void fields(V& v, SensorFaults& f) {
   v("sensor_malformed", f.sensor_malformed, 0.0, 1.0,
     "vision: share of its datagrams that are cut or hold what is no number; picture: that are "
     "none");
-  v("sensor_dropout", f.sensor_dropout, 0.0, 1.0, "further share of beams that return nothing");
+  v("sensor_dropout", f.sensor_dropout, 0.0, 1.0,
+    "further share of beams that return nothing; picture: share of pictures that are lost");
   v("sensor_noise_m", f.sensor_noise_m, 0.0, 5.0, "further sigma of every range");
+  v("glare", f.glare, 0.0, 1.0,
+    "picture: share of its contrast that stray light takes: the sun behind what it looks at");
   v("dirt_from_deg", f.dirt_from_deg, -180.0, 180.0,
     "the window is dirty from this bearing, left positive,");
   v("dirt_to_deg", f.dirt_to_deg, -180.0, 180.0, "to that one, leftwards");

@@ -20,6 +20,8 @@ constexpr double kBorderCells = 8.0;
 constexpr int kSub = 4;  ///< samples of a tag's pixel, each way
 constexpr double kWhite = 225.0;
 constexpr double kBlack = 28.0;
+constexpr double kStray = 250.0;   ///< how light stray light is
+constexpr double kBeside_m = 1.0;  ///< what is so far away counts for how much a picture blurs
 
 /// How light things are by their kind, so that people can tell them apart.
 double lightness(Kind kind) noexcept {
@@ -84,6 +86,7 @@ Painter::Painter(int columns, int rows, double fov_rad)
       rows_(rows),
       f_(columns / 2.0 / std::tan(fov_rad / 2.0)),
       grey_(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows)),
+      light_(grey_.size()),
       near_(grey_.size()) {}
 
 Vec3 Painter::seen_turned(Vec3 v) const noexcept {
@@ -97,19 +100,37 @@ Vec3 Painter::seen(Vec3 at) const noexcept {
   return seen_turned(minus(at, camera_.p));
 }
 
-const std::vector<std::uint8_t>& Painter::paint(const Scene& scene, const Moment& moment,
-                                                const Frame& camera, std::uint64_t number) {
+void Painter::expose(const Scene& scene, const Moment& moment, const Frame& camera) {
   camera_ = camera;
   paint_ground(scene);
   scene.near({camera.p.x, camera.p.y}, kFar_m, moment,
              [&](const Shape& shape) { paint_shape(scene, shape); });
-  for (const Thing& thing : scene.world().things) {
-    if (thing.kind == Kind::Tag) {
-      paint_tag(thing, scene.terrain().surface_m(thing.points.front()));
-    }
+  paint_tags(scene);
+  if (pieces_ == 0) std::ranges::fill(light_, std::uint16_t{0});
+  ++pieces_;
+  for (std::size_t i = 0; i < grey_.size(); ++i) {
+    light_[i] = static_cast<std::uint16_t>(light_[i] + grey_[i]);
+  }
+}
+
+const std::vector<std::uint8_t>& Painter::develop(std::uint64_t number, double glare) {
+  const double pieces = std::max(1, std::exchange(pieces_, 0));
+  for (std::size_t i = 0; i < grey_.size(); ++i) {
+    grey_[i] = level(std::lerp(light_[i] / pieces, kStray, glare) + 0.5);
   }
   add_noise(number);
   return grey_;
+}
+
+double Painter::blur_px(const Frame& from, const Frame& to) const noexcept {
+  const Vec3 way = minus(to.p, from.p);
+  double turned = 0.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Vec3 a{from.r[0][axis], from.r[1][axis], from.r[2][axis]};
+    const Vec3 off = minus({to.r[0][axis], to.r[1][axis], to.r[2][axis]}, a);
+    turned = std::max(turned, std::sqrt(dot(off, off)));
+  }
+  return f_ * (turned + std::sqrt(dot(way, way)) / kBeside_m);
 }
 
 /// Level, as it is under the camera, with patches by which one sees that one moves.
@@ -287,6 +308,20 @@ const std::array<bool, 100>& Painter::cells_of(int id) {
   std::free(image);
   tag36h11_destroy(family);
   return cells;
+}
+
+/// The farthest first: a nearer one covers it.
+void Painter::paint_tags(const Scene& scene) {
+  std::vector<std::pair<double, const Thing*>> tags;
+  for (const Thing& thing : scene.world().things) {
+    if (thing.kind != Kind::Tag) continue;
+    const Vec2 off = thing.points.front() - Vec2{camera_.p.x, camera_.p.y};
+    tags.emplace_back(length(off), &thing);
+  }
+  std::ranges::stable_sort(tags, std::ranges::greater{}, [](const auto& tag) { return tag.first; });
+  for (const auto& [away_m, tag] : tags) {
+    paint_tag(*tag, scene.terrain().surface_m(tag->points.front()));
+  }
 }
 
 /// Each of its pixels by the rays through it.

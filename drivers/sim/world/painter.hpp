@@ -4,6 +4,9 @@
 // hundredth of a pixel. Leaves are balls here. Pure: same scene, moment, place and number, same
 // picture.
 //
+//   expose() for each piece of the time that the shutter is open ─▶ develop(): their mean, stray
+//   light, noise
+//
 // Camera frame S: x ahead, y left, z up. column = columns/2 − f·y/x, row = rows/2 − f·z/x; the
 // middle of the first pixel is 0.5. f = columns / 2 / tan(fov / 2).
 
@@ -23,10 +26,14 @@ class Painter {
   /// @param fov_rad across, less than π.
   Painter(int columns, int rows, double fov_rad);
 
-  /// @param camera X_ES. @param number of the picture: its noise. @return columns · rows, valid
-  /// until the next call.
-  const std::vector<std::uint8_t>& paint(const Scene& scene, const Moment& moment,
-                                         const Frame& camera, std::uint64_t number);
+  /// One more piece of the light that makes the next picture. @param camera X_ES
+  void expose(const Scene& scene, const Moment& moment, const Frame& camera);
+  /// Of what was exposed since the last one. @param number of the picture: its noise. @param glare
+  /// 0 to 1: share of its contrast that stray light takes. @return columns · rows, valid until the
+  /// next call.
+  const std::vector<std::uint8_t>& develop(std::uint64_t number, double glare);
+  /// How far anything moves in the picture from one place of the camera to the other, about.
+  double blur_px(const Frame& from, const Frame& to) const noexcept;
 
  private:
   using Face = std::vector<Vec3>;
@@ -37,6 +44,7 @@ class Painter {
   void paint_cone(const Shape& shape, double shade);
   void paint_ball(const Shape& shape, double shade);
   void paint_face(const Face& corners, double shade);
+  void paint_tags(const Scene& scene);
   void paint_tag(const Thing& tag, double ground_m);
   void add_noise(std::uint64_t number);
   Vec3 seen(Vec3 at) const noexcept;
@@ -48,6 +56,8 @@ class Painter {
   const double f_;
   Frame camera_;
   std::vector<std::uint8_t> grey_;
+  std::vector<std::uint16_t> light_;  ///< sum of the pieces
+  int pieces_ = 0;
   std::vector<float> near_;                     ///< 1 / ahead of what each pixel shows
   std::map<int, std::array<bool, 100>> cells_;  ///< of tags, true: white
 };

@@ -112,6 +112,7 @@ SensorParams usual(std::string_view kind) {
     p.rows = 480;
     p.fov_h_deg = 70.0;
     p.latency_s = 0.03;
+    p.exposure_s = 0.01;
   } else if (kind == "range") {
     p.rate_hz = 20.0;
     p.fov_h_deg = 20.0;

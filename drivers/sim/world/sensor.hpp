@@ -52,6 +52,7 @@ struct SensorParams {
   double beam_mrad = 7.5;
   double merge_m = 0.15;
   double latency_s = 0.005;
+  double exposure_s = 0.0;
   std::string returns = "strongest";
 };
 
@@ -86,6 +87,8 @@ void fields(V& v, SensorParams& p) {
   v("merge_m", p.merge_m, 0.0, 5.0,
     "two echoes nearer to each other are measured as one between them");
   v("latency_s", p.latency_s, 0.0, 2.0, "from the last beam of a piece to its last byte");
+  v("exposure_s", p.exposure_s, 0.0, 0.2,
+    "picture: so long its light is gathered, up to its moment: what moves meanwhile is blurred");
   v("returns", p.returns, "vlp16: which echoes of a beam it tells: strongest, last or dual");
 }
 
