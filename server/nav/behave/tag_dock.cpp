@@ -18,6 +18,8 @@ constexpr double kOnLine_rad = 0.09;
 constexpr int kMostGates = 6;
 constexpr int kMostTurns = 3;
 constexpr double kMostLooks = 20.0;
+constexpr int kLeastSights = 3;         ///< taken standing
+constexpr double kLatePicture_s = 0.3;  ///< what came so soon after it stood may show it driving
 constexpr double kSurely = 3.0;  ///< sigmas: it looks until it is sure, and twice would often lie
 constexpr double kArrive_m = 0.01;
 constexpr double kPicture_m = 0.002;  ///< by which all pictures of a tag err alike
@@ -184,7 +186,6 @@ void TagDock::lay_line(const Vehicle& v, bool first) {
     tracker_.reset();
     tracker_.begin(*path, 0, kBehind_m);
     on_line_s_ = 0.0;
-    looked_s_ = 0.0;
     turns_ = 0;
   } else {
     tracker_.move_to(*path, 0, kBehind_m);
@@ -231,6 +232,13 @@ void TagDock::judge(const Stand& s, const Vehicle& v) {
        std::to_string(kMostTries) + " tries");
 }
 
+/// From here on pictures count as taken standing, once they can be.
+void TagDock::stands_anew(base::Time now) noexcept {
+  stood_at_ = now;
+  looked_s_ = 0.0;
+  sights_ = 0;
+}
+
 TrackOutput TagDock::step_line(const TagSight& sight, const Vehicle& v, double limit_mps,
                                double dt_s) {
   on_line_s_ += dt_s;
@@ -240,14 +248,18 @@ TrackOutput TagDock::step_line(const TagSight& sight, const Vehicle& v, double l
   }
   if (news_ && tracker_.phase() == TrackPhase::Track) lay_line(v, false);
   const TrackOutput out = tracker_.step(v, std::min(params_->dock_mps, limit_mps), dt_s);
-  if (tracker_.phase() != TrackPhase::Done) return out;
+  if (tracker_.phase() != TrackPhase::Done) {
+    stands_anew(sight.now);
+    return out;
+  }
   // It stands where the tag is seen best: a last look, and a small turn where that helps.
   looked_s_ += dt_s;
-  if (looked_s_ < params_->look_s) return out;
+  if (news_ && base::seconds(taken_ - stood_at_) > kLatePicture_s) ++sights_;
+  if (looked_s_ < params_->look_s || sights_ < kLeastSights) return out;
   const double off_deg = base::deg_from_rad(base::angle_diff_rad(v.yaw_rad, goal_->yaw_rad));
   if (std::abs(off_deg) > 0.4 * params_->within_deg && turns_ < kMostTurns) {
     ++turns_;
-    looked_s_ = 0.0;
+    stands_anew(sight.now);
     tracker_.begin_turn(goal_->yaw_rad);
     return out;
   }

@@ -14,9 +14,11 @@
 // On the line the way is laid anew with every image until straight_m are left; from then on it is
 // kept but for its length. Docked is who stands within the tolerance by thrice of what is
 // uncertain, the tag's direction included, which moves the pose sidewards; as long as more images
-// may decide it, it stands and looks. A tag whose direction is in doubt (two poses of it look
-// alike) is never docked at. Frame O of the odometry: it needs no position and does not notice when
-// that jumps. For vehicles that turn on the spot. Control thread; allocates when it lays a way.
+// may decide it, it stands and looks. Only images that were taken standing decide: what is seen
+// while it drives lies aside by as much as the picture's moment is wrong. A tag whose direction is
+// in doubt (two poses of it look alike) is never docked at. Frame O of the odometry: it needs no
+// position and does not notice when that jumps. For vehicles that turn on the spot. Control thread;
+// allocates when it lays a way.
 
 #include <memory>
 #include <optional>
@@ -72,6 +74,7 @@ class TagDock {
   struct Stand;
   Stand stand(const TagSight& sight, const Vehicle& v) const noexcept;
   void judge(const Stand& s, const Vehicle& v);
+  void stands_anew(base::Time now) noexcept;
   std::string why_unseen(const TagSight& sight) const;
   void fail(std::string why);
   bool looked(double dt_s) noexcept;
@@ -98,6 +101,8 @@ class TagDock {
   bool again_ = false;  ///< it goes on: from here on the tag must be seen
   State state_ = State::Idle;
   double looked_s_ = 0.0;
+  base::Time stood_at_{};  ///< since then it stands at the pose
+  int sights_ = 0;         ///< of the tag, taken since
   double on_line_s_ = 0.0;
   int tries_ = 0;
   double late_m_ = 0.0;  ///< it stopped beyond the place, the tries before

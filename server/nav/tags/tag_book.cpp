@@ -1,8 +1,16 @@
 #include "nav/tags/tag_book.hpp"
 
 #include <algorithm>
+#include <chrono>
 
 namespace roverd::nav::tags {
+namespace {
+
+/// 1σ of when a picture was taken: how late a camera is is told roughly, and a network or a busy
+/// computer adds to it.
+constexpr base::Duration kMoment = std::chrono::milliseconds(100);
+
+}  // namespace
 
 std::size_t TagBook::take(const TagsSeen& seen) {
   ++images_;
@@ -11,6 +19,7 @@ std::size_t TagBook::take(const TagsSeen& seen) {
     ++refused_;
     return 0;
   }
+  const sense::Pose2 earlier = history_.at(seen.stamp - kMoment).value_or(*pose);
   looked_at_ = std::max(looked_at_, seen.stamp);
   std::size_t taken = 0;
   for (const TagPlace& tag : seen.tags) {
@@ -24,13 +33,13 @@ std::size_t TagBook::take(const TagsSeen& seen) {
     if (known == known_.end()) {
       KnownTag fresh;
       fresh.id = tag.id;
-      if (!fresh.track.take(tag, *pose, seen.stamp)) continue;
+      if (!fresh.track.take(tag, *pose, seen.stamp, earlier)) continue;
       if (known_.size() >= kMost) {
         known_.erase(std::ranges::min_element(known_, {},
                                               [](const KnownTag& k) { return k.track.seen_at(); }));
       }
       known = known_.insert(known_.end(), std::move(fresh));
-    } else if (!known->track.take(tag, *pose, seen.stamp)) {
+    } else if (!known->track.take(tag, *pose, seen.stamp, earlier)) {
       continue;
     }
     ++known->sights;

@@ -63,7 +63,8 @@ bool TagTrack::five_agree(const Eigen::Vector3d& told, const Eigen::Matrix3d& r,
   return ++left_out_ >= kAnew;
 }
 
-bool TagTrack::take(const TagPlace& seen, const sense::Pose2& pose, base::Time stamp) {
+bool TagTrack::take(const TagPlace& seen, const sense::Pose2& pose, base::Time stamp,
+                    const sense::Pose2& earlier) {
   const sense::Pose2 told = pose * seen.pose;
   const double ray_rad = std::atan2(told.y_m - pose.y_m, told.x_m - pose.x_m);
   Eigen::Matrix2d turn;
@@ -77,6 +78,11 @@ bool TagTrack::take(const TagPlace& seen, const sense::Pose2& pose, base::Time s
                             Eigen::Vector2d(range_m * range_m, across_m * across_m).asDiagonal() *
                             turn.transpose();
   r(2, 2) = yaw_rad * yaw_rad;
+  const sense::Pose2 then = earlier * seen.pose;
+  const Eigen::Vector3d moved{then.x_m - told.x_m, then.y_m - told.y_m,
+                              base::angle_diff_rad(told.yaw_rad, then.yaw_rad)};
+  const Eigen::Matrix3d late = moved * moved.transpose();
+  r += late;
   if (!r.allFinite() || !std::isfinite(told.x_m + told.y_m + told.yaw_rad)) return false;
   if (known_) {
     drift(pose);
@@ -93,6 +99,7 @@ bool TagTrack::take(const TagPlace& seen, const sense::Pose2& pose, base::Time s
       const Eigen::Matrix3d rest = Eigen::Matrix3d::Identity() - gain;
       p_ = rest * p_ * rest.transpose() + gain * r * gain.transpose();  // Joseph
       p_ = (0.5 * (p_ + p_.transpose())).eval();
+      p_ += late;  // the next images are as late as this one: many of them do not make it less
       left_out_ = 0;
       fitted_ = std::min(fitted_ + 1, kSteady);
       yaw_known_ = yaw_known_ || seen.yaw_known;

@@ -19,9 +19,15 @@ namespace roverd::nav::tags {
 
 class TagTrack {
  public:
-  /// @param seen in B. @param pose X_OB when the image was taken.
+  /// @param seen in B. @param pose X_OB when the image was taken. @param earlier X_OB were it taken
+  /// as much earlier as its moment is uncertain: what moves meanwhile is known so much less.
   /// @return false: it was left out.
-  bool take(const TagPlace& seen, const sense::Pose2& pose, base::Time stamp);
+  bool take(const TagPlace& seen, const sense::Pose2& pose, base::Time stamp,
+            const sense::Pose2& earlier);
+  /// Of an image whose moment is known, or who stands.
+  bool take(const TagPlace& seen, const sense::Pose2& pose, base::Time stamp) {
+    return take(seen, pose, stamp, pose);
+  }
   void forget() noexcept { known_ = false; }
 
   /// X_OT; empty: never seen. As long as no image told its direction it is taken to face whoever

@@ -30,13 +30,17 @@ struct Docking {
   double turn_scale = 1.02;
   double half_view_rad = base::rad_from_deg(35.0);
   bool covered = false;
-  bool in_doubt = false;  ///< which way it faces
-  bool another = false;   ///< of the same number beside it
+  bool in_doubt = false;    ///< which way it faces
+  bool another = false;     ///< of the same number beside it
+  int late_ticks = 0;       ///< images are so much older than they are told to be
+  double blind_m = 0.0;     ///< nearer than this to the pose it sees no tag
+  bool from_above = false;  ///< it shows well which way the tag faces
   TagDockParams params;
   base::Setting<TagDockParams> set;
   TagBook book;
   TagDock dock{PathParams{}, BehaveParams{}, set};
   base::Time now{std::chrono::hours(1)};
+  std::deque<Pose2> was;
   std::deque<base::BodyTwist> pipe = std::deque<base::BodyTwist>(7);
   double speed_mps = 0.0;
   double rate_radps = 0.0;
@@ -46,9 +50,11 @@ struct Docking {
 
   /// As a camera of 600 px focal length sees a tag of 0.16 m: corners good to a quarter of a pixel.
   void look() {
-    const Pose2 seen = sense::inverse(truth) * tag;
+    const Pose2 seen = sense::inverse(was.front()) * tag;
     const double range_m = std::hypot(seen.x_m, seen.y_m);
-    if (covered || seen.x_m <= 0.1 || std::abs(std::atan2(seen.y_m, seen.x_m)) > half_view_rad) {
+    const bool blind = seen.x_m < params.stand_off_m + blind_m;
+    if (covered || (blind_m > 0.0 && blind) || seen.x_m <= 0.1 ||
+        std::abs(std::atan2(seen.y_m, seen.x_m)) > half_view_rad) {
       return;
     }
     if (std::abs(seen.yaw_rad) > 1.2 || range_m > 5.0) return;
@@ -57,6 +63,7 @@ struct Docking {
     place.sigma_across_m = 0.25 * range_m / 600.0;
     const double slant = std::max(0.15, std::abs(std::sin(seen.yaw_rad)));
     place.sigma_yaw_rad = place.sigma_range_m / (0.16 * slant) * 0.5;
+    if (from_above) place.sigma_yaw_rad = 0.01;
     place.yaw_known = place.sigma_yaw_rad < 0.3;
     const double ray = std::atan2(seen.y_m, seen.x_m);
     const double along = normal(place.sigma_range_m);
@@ -65,7 +72,7 @@ struct Docking {
                   seen.y_m + along * std::sin(ray) + across * std::cos(ray),
                   base::wrap_rad(seen.yaw_rad + normal(place.sigma_yaw_rad))};
     // One in twenty is the other pose, and it was not noticed.
-    if (std::uniform_real_distribution<double>(0, 1)(random) < 0.05) {
+    if (!from_above && std::uniform_real_distribution<double>(0, 1)(random) < 0.05) {
       place.pose.yaw_rad = base::wrap_rad(2.0 * ray - place.pose.yaw_rad);
     }
     place.id = kTag;
@@ -87,6 +94,8 @@ struct Docking {
       state.stamp = now;
       state.pose = odometry;
       book.moved(state);
+      was.push_back(truth);
+      while (was.size() > static_cast<std::size_t>(late_ticks) + 1) was.pop_front();
       if (i % 5 == 0) look();
       Vehicle v;
       v.at = {-400.0, 7.0};  // the position is of no use to it
@@ -166,6 +175,35 @@ TEST(TagDock, OfTwoTagsOfOneNumberNeitherIsDockedAt) {
             "two tags of number 5 are seen at once: nobody knows which one is meant");
   EXPECT_EQ(d.truth.x_m, before.x_m);
   EXPECT_GT(d.book.twice(), 10U);
+}
+
+//   ├── line ──▶ 4 cm before the pose the tag leaves the picture
+TEST(TagDock, WhatWasSeenOnlyWhileItDroveIsNeverCalledDocked) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Docking d(seed);
+    d.truth = d.tag * Pose2{-2.5, 0.2, 0.0};
+    d.late_ticks = 12;
+    d.blind_m = 0.04;
+    d.from_above = true;
+    EXPECT_FALSE(d.run(180.0)) << seed << " off by " << d.off().x_m;
+    EXPECT_EQ(d.dock.reason(), "the tag is not seen any more") << seed;
+  }
+}
+
+TEST(TagDock, PicturesThatAreLaterThanToldDoNotMakeItStandElsewhere) {
+  for (const int ticks : {3, 7, 12}) {
+    int docked = 0;
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      Docking d(seed);
+      d.truth = d.tag * Pose2{-2.5, 0.6, -0.2};
+      d.late_ticks = ticks;
+      if (!d.run(240.0)) continue;
+      ++docked;
+      EXPECT_LT(std::hypot(d.off().x_m, d.off().y_m), 0.02) << ticks << " " << seed;
+      EXPECT_LT(std::abs(base::deg_from_rad(d.off().yaw_rad)), 1.0) << ticks << " " << seed;
+    }
+    EXPECT_GE(docked, 18) << ticks;
+  }
 }
 
 TEST(TagDock, ATagWhoseDirectionStaysInDoubtIsNeverCalledDocked) {
