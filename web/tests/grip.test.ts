@@ -31,6 +31,21 @@ describe('a grip on the drive pad', () => {
     expect(grip.key_down('w', false)).toBe(true);
   });
 
+  it('is fresh after the pad went under a finger or a key, but not while a gamepad is held', () => {
+    const grip = new Grip();
+    grip.finger_down();
+    grip.key_down('w', false);
+    grip.lose_pad();
+    expect(grip.finger_down()).toBe(true);
+
+    grip.lose_pad();
+    expect(grip.key_down('w', true)).toBe(false); // held all the while
+    grip.lose_pad();
+    expect(grip.gamepad_down()).toBe(true);
+    grip.lose_pad();
+    expect(grip.finger_down()).toBe(false);
+  });
+
   it('is free again only when all is up', () => {
     const grip = new Grip();
     grip.key_down('w', false);

@@ -111,11 +111,15 @@ export class Grip {
   key_up(key: string): void {
     this.#keys.delete(key);
   }
+  /** The pad is gone from the page: of a finger and of keys it hears no more. A gamepad tells itself. */
+  lose_pad(): void {
+    this.#finger = false;
+    this.#keys.clear();
+  }
   /** The page does not hear any more when something is let go. */
   lose_sight(): void {
-    this.#finger = false;
+    this.lose_pad();
     this.#gamepad = false;
-    this.#keys.clear();
   }
 }
 
