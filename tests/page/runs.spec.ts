@@ -5,8 +5,8 @@ import type { Page } from '@playwright/test';
 import { arm, open_page, press, tab, type Point } from './page';
 import { expect, test, type Station } from './station';
 
-/** Drives a short bend to its end. */
-const drive = async (station: Station, name: string, speed_mps: number): Promise<void> => {
+/** Begins a short bend. */
+const begin = async (station: Station, name: string, speed_mps: number): Promise<void> => {
   const { home } = await station.rest<{ home: Point }>('GET', '/vehicle');
   const at = (north_m: number, east_m: number) => ({
     type: 'waypoint',
@@ -21,6 +21,10 @@ const drive = async (station: Station, name: string, speed_mps: number): Promise
   await station.rest('POST', '/execution/load', { mission_id: mission.id });
   const { id, revision } = mission;
   await station.rest('POST', '/execution/start', { mission_id: id, revision, from: 'first' });
+};
+/** Drives it to its end. */
+const drive = async (station: Station, name: string, speed_mps: number): Promise<void> => {
+  await begin(station, name, speed_mps);
   const state = async () =>
     (await station.rest<{ mission: { state: string } }>('GET', '/vehicle')).mission.state;
   await expect.poll(state, { timeout: 90_000 }).toBe('finished');
@@ -106,4 +110,24 @@ test('a run has a report and a track, and is compared with another one', async (
   await page.getByRole('checkbox').nth(1).check();
   await press(page, 'Show 2 runs');
   await expect(page.getByText(/^Squares of 25 cm|^Squares of 0\.25 m/)).toBeVisible();
+});
+
+test('a run that is opened under way goes on, and says when it is finished', async ({
+  page,
+  station,
+}) => {
+  test.setTimeout(180_000);
+  await open_page(page, station.url);
+  await arm(page);
+  await begin(station, 'Slow bend', 0.5);
+  await tab(page, 'Missions');
+  await press(page, 'Runs');
+  await page.getByRole('button', { name: /^Slow bend Under way/ }).click();
+  const panel = page.locator('#panel');
+  await expect(panel).toContainText('· Under way');
+  await expect(panel).toContainText('· Finished', { timeout: 90_000 });
+  await expect(page.getByRole('row', { name: /^Driven/ })).toContainText(/1\d\.\d m/);
+
+  await press(page, 'All runs');
+  await expect(page.getByRole('list', { name: 'Runs' })).toContainText('Finished');
 });

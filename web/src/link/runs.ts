@@ -28,8 +28,8 @@ const detail = async (id: number): Promise<Answer<RunDetail>> => {
   const answer = await request<Schemas['Run']>(`/runs/${id}`, { limit_ms: LARGE_LIMIT_MS });
   if (!answer.ok) return answer;
   // As it was driven: a mission in the words of the interface.
-  const { plan, events } = answer.value;
-  return { ok: true, value: { plan: plan as unknown as Plan, events } };
+  const { plan, ...rest } = answer.value;
+  return { ok: true, value: { ...rest, plan: plan as unknown as Plan } };
 };
 
 const track_address = (id: number, format: string): string =>

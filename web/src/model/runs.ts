@@ -24,6 +24,8 @@ export interface RunEvent {
   readonly detail: string;
 }
 export interface RunDetail {
+  readonly ended: string | null;
+  readonly outcome: Outcome;
   readonly plan: Plan;
   readonly events: readonly RunEvent[];
 }

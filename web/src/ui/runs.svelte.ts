@@ -18,6 +18,7 @@ import {
 } from '../model/run_track';
 import type { RunEvent, RunHead, RunReport } from '../model/runs';
 import { say } from '../model/say';
+import { again_and_again } from './again_and_again';
 
 export interface OpenRun {
   readonly head: RunHead;
@@ -32,6 +33,12 @@ export interface OpenRun {
 
 /** So many make one picture. */
 export const MOST_IN_HEAT = 10;
+
+/** A run that is under way is read again after so long, and after so many times as long as reading took:
+ * a page that drives beside this needs the link. */
+const READ_AGAIN_MS = 5000;
+const READ_AGAIN_TIMES = 9;
+const LOOK_MS = 1000;
 
 export class Runs {
   items = $state.raw<readonly RunHead[]>([]);
@@ -78,6 +85,8 @@ export class Runs {
   );
 
   readonly #calls: RunCalls;
+  /** When what was read last is old. */
+  #old_ms = 0;
 
   constructor(calls: RunCalls) {
     this.#calls = calls;
@@ -97,6 +106,21 @@ export class Runs {
     this.first = await this.#read(head);
     this.loading = false;
     return this.first.lines.flat();
+  }
+
+  /** The open run goes on while somebody looks at it. @param id of it @return ends it */
+  follow(id: number): () => void {
+    return again_and_again(async () => {
+      const { first } = this;
+      if (first?.head.id !== id || performance.now() < this.#old_ms) return () => undefined;
+      const now = await this.#read(first.head);
+      return () => {
+        // Without an answer stays what is known.
+        if (this.first?.head.id !== id || !now.track) return;
+        this.first = now;
+        this.items = this.items.map((each) => (each.id === id ? now.head : each));
+      };
+    }, LOOK_MS);
   }
 
   /** @param id of another run; null: none */
@@ -179,13 +203,17 @@ export class Runs {
   }
 
   async #read(head: RunHead): Promise<OpenRun> {
+    const since_ms = performance.now();
     const [report, track, detail] = await Promise.all([
       this.#calls.report(head.id),
       this.#calls.track(head.id),
       this.#calls.detail(head.id),
     ]);
+    const now_ms = performance.now();
+    this.#old_ms = now_ms + Math.max(READ_AGAIN_MS, READ_AGAIN_TIMES * (now_ms - since_ms));
+    const { ended, outcome } = detail.ok ? detail.value : head;
     return {
-      head,
+      head: { ...head, ended, outcome },
       report: report.ok ? report.value : null,
       failure: report.ok ? null : refusal_text(report.refusal),
       track: track.ok ? track.value : null,
