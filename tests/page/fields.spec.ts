@@ -83,6 +83,11 @@ test('a field is drawn, its tracks are shown with figures, and it is kept as a m
   const all = await items(page).count();
   await press(page, 'Change the field…');
   await expect(page.getByLabel('Working width, m')).toHaveValue('2');
+  // Nothing changed is nothing to save.
+  await expect(page.getByLabel('Survey', { exact: true })).toContainText('%');
+  await press(page, 'Change the mission');
+  await expect(page.getByLabel('Summary')).toContainText('saved, revision 1');
+  await press(page, 'Change the field…');
   await page.getByLabel('Working width, m').fill('4');
   await page.getByLabel('Working width, m').press('Enter');
   await expect(page.getByText('The points of “Meadow” follow')).toBeVisible();

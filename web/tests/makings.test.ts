@@ -7,6 +7,7 @@ import {
   making_of,
   mark_of,
   parse_makings,
+  same_drawn,
   with_making,
   type DrawnField,
   type DrawnRows,
@@ -52,6 +53,17 @@ const rows: DrawnRows = {
 };
 const points = (...lats: readonly number[]): Item[] =>
   lats.map((lat) => ({ type: 'waypoint', lat, lon: 26 }));
+
+it('is the same drawing in whatever order its words stand, and another one by one number', () => {
+  const { polygon, holes, ...others } = field(2).wish;
+  const kept: DrawnField = { wish: { ...others, holes, polygon }, kind: 'survey' };
+  expect(same_drawn(kept, field(2))).toBe(true);
+  expect(same_drawn({ ...kept, ...{ mark: '2-77' } }, field(2))).toBe(true);
+  expect(same_drawn(field(2), field(2.5))).toBe(false);
+  expect(same_drawn(rows, { ...rows, places: [toward, at] })).toBe(false);
+  expect(same_drawn(rows, { ...rows, wish: { ...rows.wish, entry: null } })).toBe(false);
+  expect(same_drawn(rows, field(2))).toBe(false);
+});
 
 describe('what the robot keeps of a drawing', () => {
   const kept = drawing_of(field(2), points(1, 2));

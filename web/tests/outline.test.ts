@@ -13,6 +13,7 @@ import { offset_from } from '../src/model/geo';
 import {
   add_place,
   area_m2,
+  field_m2,
   insert_place,
   move_place,
   plan_of_places,
@@ -47,6 +48,11 @@ describe('outline', () => {
     expect(area_m2(RING)).toBeCloseTo(600, 1);
     expect(area_m2(RING.toReversed())).toBeCloseTo(600, 1);
     expect(area_m2([])).toBe(0);
+    expect(field_m2([RING, [at(5, 5), at(5, 10), at(15, 10), at(15, 5)], [at(1, 1)]])).toBeCloseTo(
+      550,
+      1,
+    );
+    expect(field_m2([])).toBe(0);
     expect(area_m2(RING.slice(0, 2))).toBe(0);
   });
 

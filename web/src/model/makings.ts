@@ -21,6 +21,20 @@ export interface DrawnField {
 }
 export type Drawn = DrawnRows | DrawnField;
 
+/** In one order, and without what says nothing: as the robot keeps it, or as it is on the screen. */
+const in_order = (value: unknown): unknown => {
+  if (Array.isArray(value)) return value.map(in_order);
+  if (!is_record(value)) return value;
+  const said = Object.entries(value).filter(([, each]) => each !== null && each !== undefined);
+  return said.sort(([a], [b]) => (a < b ? -1 : 1)).map(([key, each]) => [key, in_order(each)]);
+};
+
+export const same_drawn = (a: Drawn, b: Drawn): boolean => {
+  const words = ({ kind, wish, ...rest }: Drawn): string =>
+    JSON.stringify(in_order([kind, wish, 'places' in rest ? rest.places : null]));
+  return words(a) === words(b);
+};
+
 export interface Making {
   /** The mission. */
   readonly id: string;

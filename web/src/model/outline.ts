@@ -44,3 +44,10 @@ export const area_m2 = (ring: Places): number => {
   });
   return Math.abs(twice) / 2;
 };
+
+/** Without its holes; one that is not drawn to its end takes nothing away. */
+export const field_m2 = ([field = [], ...holes]: readonly Places[]): number =>
+  Math.max(
+    0,
+    holes.reduce((left_m2, hole) => left_m2 - area_m2(hole), area_m2(field)),
+  );

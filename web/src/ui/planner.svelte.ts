@@ -2,7 +2,7 @@
 // object: taken up again later, the mission's points follow.
 
 import { refusal_text, type Refusal } from '../model/answer';
-import { drawing_of, type Drawn } from '../model/makings';
+import { drawing_of, same_drawn, type Drawn } from '../model/makings';
 import type { Plan } from '../model/plan';
 import type { PlanningCalls } from '../model/ports';
 import { say } from '../model/say';
@@ -115,6 +115,11 @@ export abstract class Planner<Wish, Result extends { readonly plan: Plan }> {
     if (result === null || id === null) return false;
     const { items, settings } = result.plan;
     const drawn = this.drawn_now();
+    const before = this.#makings.here;
+    if (before && !before.by_hand && same_drawn(before.drawn, drawn)) {
+      this.close();
+      return true;
+    }
     this.#makings.keep(id, items, drawn);
     const drawing = drawing_of(drawn, items);
     editor.do((plan) => ({ ...plan, items, settings: { ...plan.settings, ...settings }, drawing }));
