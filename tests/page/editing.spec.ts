@@ -167,6 +167,16 @@ test('when somebody else saved first, nothing is lost and the person chooses', a
   const after = await station.rest<Mission>('GET', `/missions/${id}`);
   expect(after).toMatchObject({ revision: 3, name: full.name });
   expect(after.items).toHaveLength(4);
+
+  // A copy is called so, on the screen as well.
+  await draw(page, [[0, 120]]);
+  const third = { name: 'Third', items: full.items.slice(0, 2) };
+  await station.rest('PUT', `/missions/${id}`, third, { 'If-Match': '"rev-3"' });
+  await press(page, 'Save');
+  await dialog.getByRole('button', { name: 'Keep mine as a copy' }).click();
+  const copy = `${full.name} (copy)`;
+  await expect(page.getByText(`Saved “${copy}”`)).toBeVisible();
+  await expect(page.getByLabel('Mission name')).toHaveValue(copy);
 });
 
 test('a mission of 10,000 items is shown and stays quick to edit', async ({ page, station }) => {

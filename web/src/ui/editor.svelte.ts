@@ -284,11 +284,12 @@ export class Editor implements Drawing {
       case 'theirs':
         this.adopt(theirs);
         return false;
-      case 'copy':
-        return this.#after_save(
-          plan,
-          await this.#calls.create({ ...plan, name: say('name_copy', { name: plan.name }) }),
-        );
+      case 'copy': {
+        const copy = { ...plan, name: say('name_copy', { name: plan.name }) };
+        const answer = await this.#calls.create(copy);
+        if (answer.ok) this.do((now) => (now === plan ? copy : { ...now, name: copy.name }));
+        return this.#after_save(copy, answer);
+      }
       case 'overwrite':
         this.stored = { id: theirs.id, revision: theirs.revision };
         return this.#after_save(plan, await this.#calls.replace(theirs.id, theirs.revision, plan));
@@ -299,9 +300,8 @@ export class Editor implements Drawing {
 
   /** Takes the stored state as one more step, so that undo brings one's own work back. */
   adopt(mission: Mission): void {
-    const { stored } = this;
     // The stream may have told of it already: one change is one step.
-    const known = stored?.id === mission.id && stored.revision === mission.revision;
+    const known = this.stored?.id === mission.id && this.stored.revision === mission.revision;
     if (known && !this.unsaved) return;
     const plan = plan_of(mission);
     this.stored = { id: mission.id, revision: mission.revision };
