@@ -103,7 +103,14 @@ test('a place and a few failures are chosen; what is refused is said', async ({
   const begin = page.getByRole('button', { name: 'Drill…' });
   await expect(begin).toHaveAttribute('title', /Load a mission/);
   await load_mission(station);
-  await begin.click();
+  await expect(begin).not.toHaveAttribute('title', /Load a mission/);
+  // By the keyboard one is inside then, and out again by Esc.
+  await begin.press('Enter');
+  const head = page.getByRole('heading', { name: /^Drill/ });
+  await expect(head).toBeFocused();
+  await page.keyboard.press('Escape');
+  await expect(head).toHaveCount(0);
+  await begin.press('Enter');
   await page.getByRole('slider').fill('20');
   await page.getByText('Failures: all').click();
   for (const box of await page.getByRole('checkbox').all()) await box.uncheck();

@@ -223,6 +223,34 @@ test('a refused arming lists the failing checks in words', async ({ page, statio
   await expect(refused.getByRole('listitem').first()).toBeVisible();
 });
 
+test('Esc closes what is pulled out in the Drive panel, one after the other, and stops nothing', async ({
+  page,
+  station,
+}) => {
+  await open_page(page, station.url);
+  const card = (name: string) => page.getByRole('region', { name, exact: true });
+  for (const name of ['Come home', 'Move, turn', 'Come to me']) await press(page, name);
+  for (const name of ['Come home', 'Move and turn', 'Come to me']) {
+    await expect(card(name)).toBeVisible();
+  }
+  await page.keyboard.press('Escape');
+  await expect(card('Come home')).toBeHidden();
+  await page.keyboard.press('Escape');
+  await expect(card('Come to me')).toBeHidden();
+  await expect(card('Move and turn')).toBeVisible();
+  await page.keyboard.press('Escape');
+  await expect(card('Move and turn')).toBeHidden();
+  for (const name of ['Record', 'Calibrate the vehicle']) {
+    const button = page.getByRole('button', { name, exact: true });
+    await press_it(button);
+    await expect(button).toHaveAttribute('aria-pressed', 'true');
+    await page.keyboard.press('Escape');
+    await expect(button).toHaveAttribute('aria-pressed', 'false');
+  }
+  const { estop } = await station.rest<{ estop: boolean }>('GET', '/vehicle');
+  expect(estop).toBe(false);
+});
+
 test('driving by hand moves the robot while held, and letting go stops it', async ({
   page,
   station,

@@ -52,21 +52,25 @@ const edit_key = (station: Station, event: KeyboardEvent): boolean => {
   return true;
 };
 
+/** What is pulled out in the Drive panel. While the robot comes the card stays: to close it is to stop. */
+const close_card = (station: Station): boolean => {
+  const { drills, homeward, me } = station;
+  if (station.drilling) drills.close();
+  else if (homeward.mode !== null) homeward.close();
+  else if (me.open && !me.coming) me.close();
+  else if (station.drawer !== null) station.drawer = null;
+  else return false;
+  return true;
+};
+
 /** What lies uppermost goes. @return false: nothing was open */
-const close_one = ({
-  dialogs,
-  target,
-  editor,
-  tab,
-  standing,
-  shaping,
-  sites,
-  drawing,
-}: Station): boolean => {
+const close_one = (station: Station): boolean => {
+  const { dialogs, target, editor, tab, standing, shaping, sites, drawing } = station;
   if (dialogs.open) dialogs.close();
   else if (tab === 'drive' && standing.open) standing.clear();
   else if (drawing === sites.editor && sites.editor.part !== null) sites.editor.choose(null);
   else if (tab === 'drive' && target.at) target.clear();
+  else if (tab === 'drive' && close_card(station)) return true;
   else if (tab === 'plan' && shaping.transform) shaping.cancel();
   else if (tab === 'plan' && editor.tool !== 'edit') editor.choose_tool('edit');
   else return false;
