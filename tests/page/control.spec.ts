@@ -116,10 +116,15 @@ test('control is taken, asked for, handed over, and taken by force', async ({
   await expect(control(anna)).toContainText('ben');
 
   // when: she takes it back by force; then he reads why
+  await press(cleo, 'Who is here');
+  await press(cleo, 'Who is here');
+  await expect(here.filter({ hasText: 'has control' })).toContainText('ben');
   await press(anna, 'Force …');
   await anna.getByLabel('Why, for everyone to read').fill('the gate is open');
   await press(anna, 'Take it by force');
   await expect(control(anna)).toContainText('You have control');
+  // … and a list that is open says so at once, too.
+  await expect(here.filter({ hasText: 'has control' })).toContainText('anna', { timeout: 2000 });
   await expect(control(ben).getByRole('alert')).toContainText('by force: the gate is open');
 
   // Anyone may stop.
