@@ -29,14 +29,27 @@ std::string not_found(const base::PlaceState& place) {
               : ": drive some metres by hand, or say where it stands (a tap on the map)");
 }
 
+/// Empty: it is.
+std::string not_in_use(const std::string& map, const std::optional<base::PlaceState>& place) {
+  if (!place || place->phase == PlacePhase::Off) return "no map is in use";
+  return place->map == map ? "" : "the map in use is \"" + place->map + "\"";
+}
+
+/// Why who is led into it cannot be; empty: it is known to be in it. @param place not Off
+std::string not_seen(const base::PlaceState& place, base::Time now) {
+  if (place.phase != PlacePhase::Known) return not_found(place);
+  const double age_s = base::seconds(now - place.stamp);
+  if (age_s <= kSeen_s) return {};
+  return "nothing was seen in it for " + std::to_string(std::lround(age_s)) + " s";
+}
+
 }  // namespace
 
 base::Result<base::MapLies> lies_of(const mission::MissionMap& said, const MapNow& now) {
   const auto no = [&said](const std::string& why) {
     return tl::unexpected(against(said.map, why));
   };
-  if (!now.place || now.place->phase == PlacePhase::Off) return no("no map is in use");
-  if (now.place->map != said.map) return no("the map in use is \"" + now.place->map + "\"");
+  if (const auto why = not_in_use(said.map, now.place); !why.empty()) return no(why);
   if (now.place->phase != PlacePhase::Known && (!now.place->lies || !now.frame)) {
     return no(not_found(*now.place));
   }
@@ -62,20 +75,24 @@ bool leads_into_map(const mission::Plan& plan, const nav::RouteStep* step) noexc
 base::Result<void> counts_from(const mission::MissionMap& laid, const MapNow& now, bool into_it) {
   const auto lies = lies_of(laid, now);
   if (!lies) return tl::unexpected(lies.error());
-  if (into_it && now.place->phase != PlacePhase::Known) {
-    return tl::unexpected(against(laid.map, not_found(*now.place)));
-  }
-  const double age_s = base::seconds(now.now - now.place->stamp);
-  if (into_it && age_s > kSeen_s) {
-    return tl::unexpected(against(
-        laid.map, "nothing was seen in it for " + std::to_string(std::lround(age_s)) + " s"));
-  }
+  const std::string unseen = into_it ? not_seen(*now.place, now.now) : "";
+  if (!unseen.empty()) return tl::unexpected(against(laid.map, unseen));
   const bool same =
       laid.lies && base::distance_bearing(laid.lies->at, lies->at).distance_m <= kLiesElsewhere_m &&
       std::abs(base::angle_diff_rad(laid.lies->yaw_rad, lies->yaw_rad)) <= kLiesAskew_rad;
   if (same) return {};
   return tl::unexpected(against(
       laid.map, "it lies elsewhere by now than when the mission was loaded: load it again"));
+}
+
+base::Result<base::MapPlace> found_in(const mission::MissionMap& said,
+                                      const std::optional<base::PlaceState>& place,
+                                      base::Time now) {
+  std::string why = not_in_use(said.map, place);
+  if (why.empty()) why = not_seen(*place, now);
+  if (why.empty() && !place->in_map) why = not_found(*place);
+  if (!why.empty()) return tl::unexpected(against(said.map, why));
+  return *place->in_map;
 }
 
 }  // namespace roverd::robot

@@ -32,4 +32,9 @@ bool leads_into_map(const mission::Plan& plan, const nav::RouteStep* step) noexc
 base::Result<void> counts_from(const mission::MissionMap& laid, const MapNow& now, bool into_it);
 inline constexpr double kSeen_s = 3.0;
 
+/// Where the robot is in the map, by what was seen within kSeen_s. Conflict: another map is in use
+/// or none, or it is not known to be in it.
+base::Result<base::MapPlace> found_in(const mission::MissionMap& said,
+                                      const std::optional<base::PlaceState>& place, base::Time now);
+
 }  // namespace roverd::robot

@@ -17,30 +17,32 @@ tl::unexpected<base::Error> no_map(const std::string& id) {
   return base::fail(Code::NotFound, "there is no node map " + mission::clean_name(id, "\"\""));
 }
 
-std::optional<base::LatLon> origin_of(SQLite::Statement& row, int column) {
+std::optional<base::LatLon> place_of(SQLite::Statement& row, int column) {
   if (row.getColumn(column).isNull()) return std::nullopt;
   return base::LatLon{row.getColumn(column).getDouble(), row.getColumn(column + 1).getDouble()};
 }
 
 constexpr const char* kSummary =
-    "SELECT number, id, name, created_ns, origin_lat, origin_lon, heading_deg, home, nodes, links "
-    "FROM route_maps ";
+    "SELECT number, id, name, created_ns, origin_lat, origin_lon, heading_deg, home, nodes, links, "
+    "frame_map FROM route_maps ";
 
 RouteMapSummary summary_of(SQLite::Statement& row) {
   RouteMapSummary s;
   s.id = row.getColumn(1).getString();
   s.name = row.getColumn(2).getString();
   s.created = base::WallTime(base::Duration(row.getColumn(3).getInt64()));
-  s.frame = {origin_of(row, 4), row.getColumn(6).getDouble()};
+  s.frame = {place_of(row, 4), row.getColumn(6).getDouble(), std::nullopt};
   if (!row.getColumn(7).isNull()) s.home = row.getColumn(7).getInt64();
   s.nodes = row.getColumn(8).getInt();
   s.links = row.getColumn(9).getInt();
+  if (!row.getColumn(10).isNull()) s.frame.map = row.getColumn(10).getString();
   return s;
 }
 
 void write_nodes(SQLite::Database& db, std::int64_t map, const mission::RouteGraph& graph) {
-  SQLite::Statement node(
-      db, "INSERT INTO route_nodes (map, node, x_m, y_m, theta_rad) VALUES (?, ?, ?, ?, ?)");
+  SQLite::Statement node(db,
+                         "INSERT INTO route_nodes (map, node, x_m, y_m, theta_rad, lat, lon) "
+                         "VALUES (?, ?, ?, ?, ?, ?, ?)");
   SQLite::Statement link(db, "INSERT INTO route_links (map, from_node, to_node) VALUES (?, ?, ?)");
   for (const mission::MapNode& n : graph.nodes) {
     node.bind(1, map);
@@ -48,8 +50,13 @@ void write_nodes(SQLite::Database& db, std::int64_t map, const mission::RouteGra
     node.bind(3, n.x_m);
     node.bind(4, n.y_m);
     node.bind(5, n.theta_rad);
+    if (n.on_earth) {
+      node.bind(6, n.on_earth->lat);
+      node.bind(7, n.on_earth->lon);
+    }
     node.exec();
     node.reset();
+    node.clearBindings();
     for (const std::int64_t to : n.links) {
       link.bind(1, map);
       link.bind(2, n.id);
@@ -71,7 +78,8 @@ Result<RouteMap> create_route_map(SQLite::Database& db, RouteMap map, base::Wall
   map.about.links = static_cast<int>(map.graph.links());
   SQLite::Statement row(db,
                         "INSERT INTO route_maps (id, name, created_ns, origin_lat, origin_lon, "
-                        "heading_deg, home, nodes, links) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)");
+                        "heading_deg, home, nodes, links, frame_map) "
+                        "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   row.bind(1, map.about.id);
   row.bind(2, map.about.name);
   row.bind(3, std::int64_t{now.time_since_epoch().count()});
@@ -83,6 +91,7 @@ Result<RouteMap> create_route_map(SQLite::Database& db, RouteMap map, base::Wall
   if (map.graph.home) row.bind(7, *map.graph.home);
   row.bind(8, map.about.nodes);
   row.bind(9, map.about.links);
+  if (map.about.frame.map) row.bind(10, *map.about.frame.map);
   row.exec();
   write_nodes(db, db.getLastInsertRowid(), map.graph);
   transaction.commit();
@@ -120,14 +129,16 @@ Result<RouteMap> read_route_map(SQLite::Database& db, const std::string& id) {
   map.graph.home = map.about.home;
   const std::int64_t number = head.getColumn(0).getInt64();
   SQLite::Statement nodes(
-      db, "SELECT node, x_m, y_m, theta_rad FROM route_nodes WHERE map = ? ORDER BY node");
+      db,
+      "SELECT node, x_m, y_m, theta_rad, lat, lon FROM route_nodes WHERE map = ? ORDER BY node");
   nodes.bind(1, number);
   while (nodes.executeStep()) {
     map.graph.nodes.push_back({nodes.getColumn(0).getInt64(),
                                nodes.getColumn(1).getDouble(),
                                nodes.getColumn(2).getDouble(),
                                nodes.getColumn(3).getDouble(),
-                               {}});
+                               {},
+                               place_of(nodes, 4)});
   }
   SQLite::Statement links(db,
                           "SELECT from_node, to_node FROM route_links WHERE map = ? "

@@ -31,6 +31,27 @@ EnuPoint enu_of(const MapNode& node, double heading_deg) noexcept {
   return {node.x_m * c - node.y_m * s, node.x_m * s + node.y_m * c};
 }
 
+constexpr double kFar = std::numeric_limits<double>::infinity();
+
+/// Empty: none is nearer than `most_m`.
+template <class Far>
+std::optional<std::int64_t> nearest_of(const RouteGraph& graph, double most_m, Far far_m) {
+  std::optional<std::int64_t> best;
+  for (const MapNode& node : graph.nodes) {
+    const double this_m = far_m(node);
+    if (this_m >= most_m) continue;
+    most_m = this_m;
+    best = node.id;
+  }
+  return best;
+}
+
+std::optional<std::int64_t> nearest_on_earth(const RouteGraph& graph, LatLon at) {
+  return nearest_of(graph, base::LocalFrame::kReach_m, [at](const MapNode& node) {
+    return node.on_earth ? base::distance_bearing(*node.on_earth, at).distance_m : kFar;
+  });
+}
+
 }  // namespace
 
 const MapNode* RouteGraph::find(std::int64_t id) const noexcept {
@@ -47,7 +68,6 @@ std::size_t RouteGraph::links() const noexcept {
 base::Result<std::vector<std::int64_t>> shortest_way(const RouteGraph& graph, std::int64_t from,
                                                      std::int64_t to) {
   constexpr auto kNone = std::numeric_limits<std::size_t>::max();
-  constexpr auto kFar = std::numeric_limits<double>::infinity();
   struct Open {
     double cost_m;  ///< so far, and straight to the end
     std::size_t node;
@@ -104,20 +124,23 @@ LatLon position_of(const MapNode& node, const MapFrame& frame) {
 
 std::optional<std::int64_t> nearest_node(const RouteGraph& graph, const MapFrame& frame,
                                          LatLon at) {
+  if (frame.map) return nearest_on_earth(graph, at);
   if (!frame.origin) return std::nullopt;
   if (base::distance_bearing(*frame.origin, at).distance_m > base::LocalFrame::kReach_m) {
     return std::nullopt;
   }
   const EnuPoint here = base::TangentPlane(*frame.origin).to_local(at);
-  std::optional<std::int64_t> best;
-  double best_m = std::numeric_limits<double>::infinity();
-  for (const MapNode& node : graph.nodes) {
-    const double far_m = base::distance_m(here, enu_of(node, frame.heading_deg));
-    if (far_m >= best_m) continue;
-    best_m = far_m;
-    best = node.id;
-  }
-  return best;
+  const double yaw = base::yaw_from_heading(frame.heading_deg);
+  const double c = std::cos(yaw);
+  const double s = std::sin(yaw);
+  return nearest_node(graph, here.east_m * c + here.north_m * s,
+                      here.north_m * c - here.east_m * s);
+}
+
+std::optional<std::int64_t> nearest_node(const RouteGraph& graph, double x_m, double y_m) {
+  return nearest_of(graph, kFar, [x_m, y_m](const MapNode& node) {
+    return node.on_earth ? kFar : std::hypot(node.x_m - x_m, node.y_m - y_m);
+  });
 }
 
 std::vector<Item> items_along(const RouteGraph& graph, const MapFrame& frame,
@@ -126,6 +149,19 @@ std::vector<Item> items_along(const RouteGraph& graph, const MapFrame& frame,
   items.reserve(way.size());
   for (const std::int64_t id : way) {
     const MapNode& node = graph.nodes[place_in(graph, id)];
+    const bool last = items.size() + 1 == way.size();
+    if (node.on_earth) {
+      Waypoint w;
+      w.at = *node.on_earth;
+      items.emplace_back(w);
+      continue;
+    }
+    if (frame.map) {
+      MapPoint point{.x_m = node.x_m, .y_m = node.y_m};
+      if (last) point.yaw_deg = base::deg_from_rad(base::wrap_rad(node.theta_rad));
+      items.emplace_back(point);
+      continue;
+    }
     if (frame.origin) {
       Waypoint w;
       w.at = position_of(node, frame);
@@ -134,7 +170,7 @@ std::vector<Item> items_along(const RouteGraph& graph, const MapFrame& frame,
     }
     const EnuPoint at = enu_of(node, frame.heading_deg);
     Local local{at.east_m, at.north_m, std::nullopt};
-    if (items.size() + 1 == way.size()) {
+    if (last) {
       const double x_yaw = base::yaw_from_heading(frame.heading_deg);
       local.heading_deg = base::heading_from_yaw(x_yaw + node.theta_rad);
     }

@@ -49,6 +49,7 @@ struct Record {
   bool home = false;
   std::optional<std::int64_t> id;
   std::vector<double> pose;
+  std::vector<double> latlon;
   std::vector<std::int64_t> links;
 };
 
@@ -106,7 +107,7 @@ class GraphReader {
       }
       out_.graph.home = record.id;
       home_line_ = line_;
-      if (record.pose.empty() && record.links.empty()) return;
+      if (record.pose.empty() && record.latlon.empty() && record.links.empty()) return;
     }
     add_node(record);
   }
@@ -125,6 +126,7 @@ class GraphReader {
         value.remove_prefix(sign + 1);
         const bool again = (same_word(key, "id") && record.id) ||
                            (same_word(key, "pose") && !record.pose.empty()) ||
+                           (same_word(key, "latlon") && !record.latlon.empty()) ||
                            (same_word(key, "links") && !record.links.empty());
         if (again) return damaged("has " + clean_name(key, "a key") + " twice");
         if (value.empty()) continue;
@@ -136,10 +138,11 @@ class GraphReader {
   }
 
   bool take_value(std::string_view key, std::string_view value, Record& record) {
-    if (same_word(key, "pose")) {
+    const bool on_earth = same_word(key, "latlon");
+    if (on_earth || same_word(key, "pose")) {
       const auto number = value_in<double>(value);
       if (!number || !std::isfinite(*number)) return damaged_value(key, value);
-      record.pose.push_back(*number);
+      (on_earth ? record.latlon : record.pose).push_back(*number);
       return true;
     }
     const bool is_id = same_word(key, "id");
@@ -165,6 +168,8 @@ class GraphReader {
   }
 
   void add_node(const Record& record) {
+    if (!record.latlon.empty() && record.pose.empty()) return add_node_on_earth(record);
+    if (!record.latlon.empty()) return problems_.add(here(), "has both a pose and a latlon");
     constexpr std::size_t kPose = 3;
     if (record.pose.size() != kPose) {
       return problems_.add(here(), "pose must be x, y and theta, has " +
@@ -176,14 +181,30 @@ class GraphReader {
     if (std::abs(record.pose[2]) > kMostTurns_rad) {
       return problems_.add(here(), "theta must be an angle in radians");
     }
+    keep(record, {*record.id, record.pose[0], record.pose[1], record.pose[2], record.links});
+  }
+
+  void add_node_on_earth(const Record& record) {
+    constexpr std::size_t kLatLon = 2;
+    if (record.latlon.size() != kLatLon) {
+      return problems_.add(here(), "latlon must be latitude and longitude, has " +
+                                       std::to_string(record.latlon.size()) + " numbers");
+    }
+    const LatLon at{record.latlon[0], record.latlon[1]};
+    if (!base::is_valid(at)) {
+      return problems_.add(here(), "latlon is no latitude and longitude in degrees");
+    }
+    keep(record, {*record.id, 0.0, 0.0, 0.0, record.links, at});
+  }
+
+  void keep(const Record& record, MapNode node) {
     const auto [at, is_new] = index_.try_emplace(*record.id, nodes_.size());
     if (!is_new) {
       return problems_.add(here(), "node " + std::to_string(*record.id) + " is on line " +
                                        std::to_string(nodes_[at->second].line) + " already");
     }
     links_ += record.links.size();
-    nodes_.push_back(
-        {{*record.id, record.pose[0], record.pose[1], record.pose[2], record.links}, line_});
+    nodes_.push_back({std::move(node), line_});
   }
 
   /// Links to nodes that are there, each once.

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "base/angle.hpp"
+
 namespace roverd::mission {
 namespace {
 
@@ -75,6 +77,12 @@ TEST(RouteGraph, DamageIsNamedByItsLine) {
   EXPECT_EQ(map_refusal("Node id=1 pose=0 0 0 ~ links=2"), "line 1: goes on after its ~; ");
   EXPECT_EQ(map_refusal("Node id=1 id=2 pose=0 0 0 ~"), "line 1: has id twice; ");
   EXPECT_EQ(map_refusal("Node 7 id=1 ~"), "line 1: has \"7\" without a key; ");
+  EXPECT_EQ(map_refusal("Node id=1 latlon=58 ~"),
+            "line 1: latlon must be latitude and longitude, has 1 numbers; ");
+  EXPECT_EQ(map_refusal("Node id=1 latlon=91 26 ~"),
+            "line 1: latlon is no latitude and longitude in degrees; ");
+  EXPECT_EQ(map_refusal("Node id=1 latlon=58 26 pose=0 0 0 ~"),
+            "line 1: has both a pose and a latlon; ");
   EXPECT_EQ(map_refusal("Node id=1 pose=1e5 0 0 ~"),
             "line 1: pose lies more than 10 km from the origin; ");
   EXPECT_EQ(map_refusal("Node id=1 pose=0 0 0 ~\nNode id=1 pose=1 0 0 ~"),
@@ -121,6 +129,67 @@ TEST(RouteGraph, LiesOnEarthAsItsFrameSays) {
   EXPECT_EQ(std::get<Local>(items.back()).heading_deg.has_value(), true);
   EXPECT_NEAR(*std::get<Local>(items.back()).heading_deg, 360.0, 0.001);
   EXPECT_NEAR(std::get<Local>(items.back()).north_m, 4.0, 1e-9);
+}
+
+TEST(RouteGraph, InAMapItsWaysArePointsOfThatMap) {
+  const RouteGraph graph = graph_from_text(kMap)->graph;
+  const MapFrame frame{{}, 90.0, "shed"};
+  const auto items = items_along(graph, frame, *shortest_way(graph, 2, 3));
+  EXPECT_EQ(items, (std::vector<Item>{MapPoint{.x_m = 4.0}, MapPoint{},
+                                      MapPoint{.y_m = 4.0, .yaw_deg = base::deg_from_rad(1.5708)}}))
+      << "the last one has the node's heading, from the map's x axis";
+  EXPECT_EQ(nearest_node(graph, 6.5, 3.0), 5);
+  EXPECT_FALSE(nearest_node(graph, frame, LatLon{58.378, 26.729})) << "none lies on the earth";
+}
+
+//   shed: 1 ── 2 │door│ 3 ── 4 on the street, 10 m apart
+constexpr const char* kShedAndStreet =
+    "Node id=1 pose=0 0 0 links=2 ~\nNode id=2 pose=10 0 0 links=1 3 ~\n"
+    "Node id=3 latlon=58.37818 26.729 links=2 4 ~\nNode id=4 latlon=58.37827 26.729 links=3 ~\n";
+const base::MapLies kShedLies{LatLon{58.378, 26.729}, base::kPi / 2.0};  // x looks north
+
+TEST(RouteGraph, WhereTheMapLiesJoinsItsNodesAndThoseOnTheEarth) {
+  const RouteGraph graph = graph_from_text(kShedAndStreet)->graph;
+  const OnePlane flat = on_one_plane(graph, kShedLies);
+  EXPECT_FALSE(flat.parted);
+  const auto way = shortest_way(flat.graph, 1, 4);
+  ASSERT_TRUE(way) << way.error().detail;
+  EXPECT_NEAR(way_length_m(flat.graph, *way), 30.0, 0.1);
+  const auto items = items_along(flat.graph, {{}, 90.0, "shed"}, *way);
+  ASSERT_EQ(items.size(), 4u);
+  EXPECT_EQ(items[1], Item(MapPoint{.x_m = 10.0}));
+  EXPECT_EQ(std::get<Waypoint>(items[2]).at, (LatLon{58.37818, 26.729})) << "as it was given";
+}
+
+TEST(RouteGraph, NoWayLeadsOutOfAMapThatLiesNowhere) {
+  const RouteGraph graph = graph_from_text(kShedAndStreet)->graph;
+  const OnePlane flat = on_one_plane(graph, {});
+  EXPECT_TRUE(flat.parted);
+  EXPECT_FALSE(shortest_way(flat.graph, 1, 4));
+  EXPECT_FALSE(shortest_way(flat.graph, 4, 1));
+  // Each part has its ways.
+  EXPECT_EQ(way_length_m(flat.graph, *shortest_way(flat.graph, 1, 2)), 10.0);
+  EXPECT_NEAR(way_length_m(flat.graph, *shortest_way(flat.graph, 3, 4)), 10.0, 0.1);
+  EXPECT_EQ(nearest_node(graph, 100.0, 0.0), 2) << "only those in the map's own metres";
+  EXPECT_EQ(nearest_node(graph, {{}, 90.0, "shed"}, LatLon{58.378, 26.729}), 3);
+}
+
+TEST(RouteGraph, NodesOnTheEarthBecomeMetresOfAGraphWithAnOrigin) {
+  RouteGraph graph = graph_from_text("Node id=5 latlon=58.378 26.729 ~")->graph;
+  const MapFrame frame{LatLon{58.3779, 26.729}, 0.0};  // x is north
+  ASSERT_TRUE(settle_on_earth(graph, frame));
+  EXPECT_FALSE(graph.nodes[0].on_earth);
+  EXPECT_NEAR(graph.nodes[0].x_m, 11.14, 0.01);
+  EXPECT_LT(base::distance_bearing(position_of(graph.nodes[0], frame), {58.378, 26.729}).distance_m,
+            1e-3);
+  const auto why = [](const MapFrame& in) {
+    RouteGraph again = graph_from_text("Node id=5 latlon=58.378 26.729 ~")->graph;
+    const auto fine = settle_on_earth(again, in);
+    return fine ? "" : fine.error().detail;
+  };
+  EXPECT_EQ(why({{}, 90.0, "shed"}), "");
+  EXPECT_NE(why({}).find("node 5 lies on the earth, and the graph indoors"), std::string::npos);
+  EXPECT_NE(why({LatLon{59.0, 26.0}}).find("node 5 lies more than 10 km"), std::string::npos);
 }
 
 TEST(RouteGraph, TenThousandNodesAreQuick) {

@@ -224,5 +224,28 @@ TEST(MapFrame, ARefusedWordToGoOnAfterARestartLoadsNothing) {
   EXPECT_EQ(f.execution(), ExecutionState::Running);
 }
 
+TEST(MapFrame, TheRobotIsFoundInItByWhatIsSeenNow) {
+  const base::Time now{std::chrono::seconds(100)};
+  base::PlaceState place;
+  place.stamp = now;
+  place.phase = PlacePhase::Known;
+  place.map = "shed";
+  place.in_map = base::MapPlace{4.0, 1.5, 0.0};
+  const auto why = [&](const std::optional<base::PlaceState>& seen) {
+    const auto found = found_in({"shed"}, seen, now);
+    return found ? "" : found.error().detail;
+  };
+  // Wherever it lies, also nowhere.
+  ASSERT_EQ(why(place), "");
+  EXPECT_EQ(found_in({"shed"}, place, now)->x_m, 4.0);
+  EXPECT_NE(why({}).find("no map is in use"), std::string::npos);
+  place.stamp = now - std::chrono::seconds(5);
+  EXPECT_NE(why(place).find("nothing was seen in it for 5 s"), std::string::npos);
+  place.phase = PlacePhase::Searching;
+  EXPECT_NE(why(place).find("the robot is not found in it yet"), std::string::npos);
+  place.map = "yard";
+  EXPECT_NE(why(place).find("the map in use is \"yard\""), std::string::npos);
+}
+
 }  // namespace
 }  // namespace roverd::robot

@@ -134,6 +134,12 @@ TEST(Opening, EveryOlderSchemaIsUpgradedWithItsData) {
             "INSERT INTO sessions (id, hash, user, device, address, created_ns, seen_ns) VALUES "
             "('s0', 'earlier', 'carl', 'phone', 'here', 1000, 1000)");
       }
+      if (known >= 9) {
+        c.exec(
+            "INSERT INTO route_maps (id, name, created_ns, origin_lat, origin_lon, heading_deg, "
+            "nodes, links) VALUES ('r0', 'yard', 1000, 58, 26, 90, 1, 0)");
+        c.exec("INSERT INTO route_nodes (map, node, x_m, y_m, theta_rad) VALUES (1, 7, 2, 3, 0)");
+      }
       c.exec("COMMIT");
     }
     EXPECT_EQ(user_version(folder.file()), static_cast<int>(known));
@@ -151,6 +157,12 @@ TEST(Opening, EveryOlderSchemaIsUpgradedWithItsData) {
     EXPECT_TRUE(replace(*store, "0123456789ab", 2, drawn));
     EXPECT_EQ(read(*store, "0123456789ab")->plan.drawing, drawn.drawing);
     EXPECT_TRUE(read_at(*store, "0123456789ab", 2)->plan.drawing.is_null());
+    const auto yard = answer_of<RouteMap>([&](auto reply) { store->read_route_map("r0", reply); });
+    EXPECT_EQ(yard.has_value(), known >= 9);
+    if (yard) {
+      EXPECT_FALSE(yard->about.frame.map);
+      EXPECT_EQ(yard->graph.nodes, (std::vector<mission::MapNode>{{7, 2.0, 3.0, 0.0}}));
+    }
     store->add_event({base::WallTime{}, base::Severity::Info, "armed", "x"});
     EXPECT_EQ(events(*store, 0, base::Severity::Info, 10)->items.size(), 1u);
     const people::User anna{"anna", people::Role::Admin, "hash", {}};

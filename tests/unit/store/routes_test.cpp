@@ -26,8 +26,12 @@ TEST(RouteStore, KeepsMapsAsTheyCame) {
   ASSERT_TRUE(made) << made.error().detail;
   RouteMap indoors = small_map("hall");
   indoors.about.frame = {};
+  indoors.about.frame.map = "shed";
+  indoors.graph.nodes[1] = {4, 0, 0, 0, {1000}, base::LatLon{58.0, 26.0}};
   indoors.graph.home.reset();
-  ASSERT_TRUE(answer_of<RouteMap>([&](auto reply) { store->create_route_map(indoors, reply); }));
+  const auto hall =
+      answer_of<RouteMap>([&](auto reply) { store->create_route_map(indoors, reply); });
+  ASSERT_TRUE(hall) << hall.error().detail;
   store.reset();
   store = *Store::open(folder.file(), at_once);
   const auto read =
@@ -36,6 +40,12 @@ TEST(RouteStore, KeepsMapsAsTheyCame) {
   EXPECT_EQ(read->graph, small_map("yard").graph);
   EXPECT_EQ(read->about.frame.origin, small_map("yard").about.frame.origin);
   EXPECT_EQ(read->about.links, 3);
+  EXPECT_FALSE(read->about.frame.map);
+  const auto read_hall =
+      answer_of<RouteMap>([&](auto reply) { store->read_route_map(hall->about.id, reply); });
+  ASSERT_TRUE(read_hall);
+  EXPECT_EQ(read_hall->graph, indoors.graph);
+  EXPECT_EQ(read_hall->about.frame.map, "shed");
   // The newest first, page by page.
   const auto list = [&](const std::string& cursor) {
     return *answer_of<Page<RouteMapSummary>>(
