@@ -41,6 +41,7 @@ Api::Api(Deps deps) : impl_(std::make_unique<Impl>(std::move(deps))) {
   add_driver_routes(c);
   add_teach_routes(c);
   add_route_routes(c);
+  add_way_routes(c);
   add_tile_routes(c);
   add_drive_routes(c);
   add_run_routes(c);

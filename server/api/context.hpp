@@ -211,6 +211,7 @@ void add_server_routes(const ContextPtr& context);
 void add_driver_routes(const ContextPtr& context);
 void add_teach_routes(const ContextPtr& context);
 void add_route_routes(const ContextPtr& context);
+void add_way_routes(const ContextPtr& context);
 void add_tile_routes(const ContextPtr& context);
 void add_drive_routes(const ContextPtr& context);
 void add_run_routes(const ContextPtr& context);

@@ -1,10 +1,9 @@
-// Node maps: imported, listed, read, deleted, and the shortest way through one as a mission.
+// Node maps: imported, listed, read and deleted.
 
 #include <charconv>
 #include <utility>
 
 #include "api/context.hpp"
-#include "api/mission_change.hpp"
 #include "mission/json/json.hpp"
 #include "mission/text.hpp"
 
@@ -28,6 +27,18 @@ base::Result<std::optional<double>> query_number(const Call& call, const char* n
   return base::fail(base::Code::Invalid, std::string(name) + " " + detail, {{name, detail}});
 }
 
+/// A graph counts from one thing. @param beside what says something else; empty: nothing does
+base::Result<std::string> map_named(std::string map, const std::string& beside) {
+  const auto wrong = [](const std::string& detail) {
+    return base::fail(base::Code::Invalid, "map " + detail, {{"map", detail}});
+  };
+  if (auto problem = mission::name_problem(map); !problem.empty()) return wrong(problem);
+  if (beside.empty()) return map;
+  return wrong("cannot stand beside " + beside +
+               ": the nodes are metres of that map, which says itself where on the earth it "
+               "lies; nodes that lie on the earth are a graph of their own");
+}
+
 base::Result<mission::MapFrame> map_frame_of(const Call& call) {
   const auto lat = query_number(call, "origin_lat", -90.0, 90.0);
   if (!lat) return tl::unexpected(lat.error());
@@ -41,6 +52,11 @@ base::Result<mission::MapFrame> map_frame_of(const Call& call) {
                       {{missing, "is missing"}});
   }
   mission::MapFrame frame;
+  if (std::string map = query_text(call, "map"); !map.empty()) {
+    auto named = map_named(std::move(map), *lat ? "origin_lat" : *heading ? "heading_deg" : "");
+    if (!named) return tl::unexpected(named.error());
+    frame.map = std::move(*named);
+  }
   if (*lat) frame.origin = LatLon{**lat, **lon};
   frame.heading_deg = heading->value_or(frame.heading_deg);
   return frame;
@@ -51,6 +67,7 @@ Json map_json(const store::RouteMapSummary& s) {
               {"name", s.name},
               {"created", base::to_rfc3339(s.created)},
               {"origin", nullptr},
+              {"map", s.frame.map ? Json(*s.frame.map) : Json(nullptr)},
               {"heading_deg", s.frame.heading_deg},
               {"home", s.home ? Json(*s.home) : Json(nullptr)},
               {"nodes", s.nodes},
@@ -61,16 +78,26 @@ Json map_json(const store::RouteMapSummary& s) {
   return out;
 }
 
-Json map_with_nodes_json(const store::RouteMap& map) {
+/// Empty: indoors, or nobody knows where the map lies that it counts from.
+std::optional<LatLon> on_earth(const mission::MapNode& node, const mission::MapFrame& frame,
+                               const std::optional<base::MapLies>& lies) {
+  if (node.on_earth) return node.on_earth;
+  if (frame.origin) return mission::position_of(node, frame);
+  if (!lies) return std::nullopt;
+  return mission::place_on_earth(*lies, {.x_m = node.x_m, .y_m = node.y_m});
+}
+
+/// @param lies the map that it counts from
+Json map_with_nodes_json(const store::RouteMap& map, const std::optional<base::MapLies>& lies) {
   Json out = map_json(map.about);
   Json nodes = Json::array();
   for (const mission::MapNode& n : map.graph.nodes) {
     Json node = {{"id", n.id},     {"x_m", n.x_m},   {"y_m", n.y_m},    {"theta_rad", n.theta_rad},
                  {"lat", nullptr}, {"lon", nullptr}, {"links", n.links}};
-    if (map.about.frame.origin) {
-      const LatLon at = mission::position_of(n, map.about.frame);
-      node["lat"] = at.lat;
-      node["lon"] = at.lon;
+    if (n.on_earth) node["x_m"] = node["y_m"] = node["theta_rad"] = nullptr;
+    if (const auto at = on_earth(n, map.about.frame, lies)) {
+      node["lat"] = at->lat;
+      node["lon"] = at->lon;
     }
     nodes.push_back(std::move(node));
   }
@@ -104,6 +131,9 @@ Handler import_map(const ContextPtr& context) {
         call, effort, [body = std::move(body)] { return mission::graph_from_text(body); },
         [context, call, frame = *frame](auto read) {
           if (!read) return call->respond(problem(read.error()));
+          if (const auto fine = mission::settle_on_earth(read->graph, frame); !fine) {
+            return call->respond(problem(fine.error()));
+          }
           store::RouteMap map;
           map.about.name = mission::clean_name(query_text(*call, "name"), "Node map");
           map.about.frame = frame;
@@ -137,8 +167,10 @@ Handler read_map(const ContextPtr& context) {
         call->params.at("id"), [context, call](base::Result<store::RouteMap> map) {
           if (!map) return call->respond(problem(map.error()));
           const Effort effort{150 * map->graph.nodes.size()};
-          context->answer_aside(call, effort, [map = std::move(*map)] {
-            return json_response(http::status::ok, map_with_nodes_json(map));
+          const auto& of_map = map->about.frame.map;
+          auto lies = of_map ? context->lies_of(*of_map) : std::nullopt;
+          context->answer_aside(call, effort, [map = std::move(*map), lies] {
+            return json_response(http::status::ok, map_with_nodes_json(map, lies));
           });
         });
   };
@@ -153,171 +185,6 @@ Handler delete_map(const ContextPtr& context) {
   };
 }
 
-/// One way on its way. Web thread.
-class WayRequest : public std::enable_shared_from_this<WayRequest> {
- public:
-  WayRequest(ContextPtr context, CallPtr call)
-      : context_(std::move(context)), call_(std::move(call)) {}
-
-  void begin(const Json& body) {
-    Members members(body);
-    for (const char* name : {"from", "to"}) members.require(name);
-    from_ = place(members, "from");
-    to_ = place(members, "to");
-    const auto graph = members.text("graph");
-    name_ = members.text("name");
-    speed_mps_ = members.number("speed_mps", 0.05, 10.0);
-    if (name_) {
-      if (auto wrong = mission::name_problem(*name_); !wrong.empty()) {
-        members.complain("name", std::move(wrong));
-      }
-    }
-    if (const auto fine = members.finish(); !fine) return refuse(fine.error());
-    if (graph) return read(*graph);
-    // Without a name the only one is meant.
-    context_->deps.store.list_route_maps(2, "", [self = shared_from_this()](auto page) {
-      if (!page) return self->refuse(page.error());
-      if (page->items.size() == 1) return self->read(page->items.front().id);
-      const char* detail = page->items.empty() ? "cannot be: no node map was imported"
-                                               : "is needed: there are several node maps";
-      self->refuse({base::Code::Invalid, std::string("graph ") + detail, {{"/graph", detail}}});
-    });
-  }
-
- private:
-  /// A node's id, or a word.
-  struct Place {
-    std::optional<std::int64_t> node;
-    std::string word;
-  };
-
-  static Place place(Members& members, const char* name) {
-    Place out;
-    const Json* value = members.any(name);
-    if (value == nullptr) return out;
-    if (value->is_string()) {
-      out.word = value->get<std::string>();
-      if (out.word != "here" && out.word != "home") {
-        members.complain(name, "must be a node's id, \"here\" or \"home\"");
-      }
-    } else if (value->is_number_integer() &&
-               !(value->is_number_unsigned() && value->get<std::uint64_t>() > INT64_MAX)) {
-      out.node = value->get<std::int64_t>();
-    } else {
-      members.complain(name, "must be a node's id, \"here\" or \"home\"");
-    }
-    return out;
-  }
-
-  void refuse(const base::Error& error) { call_->respond(problem(error)); }
-
-  void read(const std::string& id) {
-    context_->deps.store.read_route_map(
-        id, [self = shared_from_this()](base::Result<store::RouteMap> map) {
-          if (map) return self->plan(std::move(*map));
-          base::Error error = std::move(map.error());
-          if (error.code == base::Code::NotFound) {
-            error.code = base::Code::Invalid;
-            error.fields = {{"/graph", error.detail}};
-          }
-          self->refuse(error);
-        });
-  }
-
-  base::Result<std::int64_t> node_of(const store::RouteMap& map, const Place& place,
-                                     const char* pointer) const {
-    const auto wrong = [pointer](std::string detail) {
-      return base::fail(base::Code::Invalid, std::string(pointer + 1) + " " + detail,
-                        {{pointer, detail}});
-    };
-    if (place.node) {
-      if (map.graph.find(*place.node) != nullptr) return *place.node;
-      return wrong("cannot be: the map has no node " + std::to_string(*place.node));
-    }
-    if (place.word == "home") {
-      if (map.graph.home) return *map.graph.home;
-      return wrong("cannot be home: the map has no home node");
-    }
-    if (!map.about.frame.origin) return wrong("cannot be here: the map lies indoors");
-    const auto snapshot = context_->deps.robot.snapshot();
-    const bool known =
-        snapshot && snapshot->pose &&
-        base::seconds(base::steady_now() - snapshot->pose->stamp) <= StaleAfter::kPosition_s;
-    if (!known) return base::fail(base::Code::Conflict, "the vehicle's position is not known");
-    const auto nearest = mission::nearest_node(map.graph, map.about.frame, snapshot->pose->global);
-    if (nearest) return *nearest;
-    return base::fail(base::Code::Conflict, "the vehicle is more than 10 km away from the map");
-  }
-
-  struct Way {
-    mission::Plan plan;
-    std::shared_ptr<Json> body;
-    std::string what;
-  };
-
-  void plan(store::RouteMap map) {
-    const Effort effort{20 * map.graph.nodes.size()};
-    context_->aside(
-        call_, effort,
-        [self = shared_from_this(), map = std::move(map)] { return self->way_on(map); },
-        [self = shared_from_this()](base::Result<Way> way) {
-          if (!way) return self->refuse(way.error());
-          self->answer(std::move(*way));
-        });
-  }
-
-  /// Beside the web thread: reads what nobody changes any more.
-  base::Result<Way> way_on(const store::RouteMap& map) const {
-    const auto from = node_of(map, from_, "/from");
-    if (!from) return tl::unexpected<base::Error>(from.error());
-    const auto to = node_of(map, to_, "/to");
-    if (!to) return tl::unexpected<base::Error>(to.error());
-    const auto way = mission::shortest_way(map.graph, *from, *to);
-    if (!way) return tl::unexpected<base::Error>(way.error());
-    mission::Plan plan;
-    plan.name = name_.value_or("Node " + std::to_string(*from) + " to " + std::to_string(*to));
-    plan.settings.speed_mps = speed_mps_;
-    plan.items = mission::items_along(map.graph, map.about.frame, *way);
-    if (const auto fine = mission::check_plan(plan); !fine) {
-      return tl::unexpected<base::Error>(fine.error());
-    }
-    auto body = std::make_shared<Json>(Json{{"graph", map.about.id},
-                                            {"nodes", *way},
-                                            {"length_m", mission::way_length_m(map.graph, *way)}});
-    if (!name_) (*body)["mission"] = mission::plan_to_json(plan);
-    return Way{std::move(plan), std::move(body), "planned on " + map.about.name};
-  }
-
-  void answer(Way way) {
-    const Effort effort{2 * bytes_of(way.plan), true};
-    if (!name_) {
-      return context_->answer_aside(call_, effort, [body = std::move(way.body)] {
-        return json_response(http::status::ok, *body);
-      });
-    }
-    context_->deps.store.create_mission(
-        std::move(way.plan), {kAuthor, way.what},
-        [self = shared_from_this(), body = std::move(way.body),
-         effort](base::Result<store::StoredMission> stored) {
-          if (!stored) return self->refuse(stored.error());
-          self->context_->announce(stored->id, stored->revision);
-          self->context_->answer_aside(self->call_, effort, [body, mission = std::move(*stored)] {
-            Response response = mission_response(http::status::created, mission);
-            (*body)["mission"] = mission_json(mission);
-            response.body() = json_response(http::status::created, *body).body();
-            return response;
-          });
-        });
-  }
-
-  ContextPtr context_;
-  CallPtr call_;
-  Place from_;
-  Place to_;
-  std::optional<std::string> name_;
-  std::optional<double> speed_mps_;
-};
-
 }  // namespace
 
 void add_route_routes(const ContextPtr& c) {
@@ -329,14 +196,6 @@ void add_route_routes(const ContextPtr& c) {
   c->router.add({get, "/routes/{id}", {200, 404, 503}, read_map(c)});
   c->router.add(
       {http::verb::delete_, "/routes/{id}", {204, 400, 403, 404, 429, 503}, delete_map(c)});
-  c->router.add({post,
-                 "/routes/plan",
-                 {200, 201, 400, 403, 409, 413, 415, 422, 429, 503},
-                 [c](const CallPtr& call) {
-                   const auto body = json_body(call->request);
-                   if (!body) return call->respond(problem(body.error()));
-                   std::make_shared<WayRequest>(c, call)->begin(*body);
-                 }});
 }
 
 }  // namespace roverd::api
