@@ -183,6 +183,47 @@ def is_laid_where_a_person_says_that_it_stands():
         hall.rest.do("POST", "/execution/load", {"mission_id": mission["id"]})
 
 
+GRAPH = b"""Node id=1 pose=2 2 0 links=2 ~
+Node id=2 pose=8 2 0 links=1 3 ~
+Node id=3 pose=9 4.5 0 links=2 4 ~
+Node id=4 pose=9.5 0 -1.5708 links=3 ~
+Node id=5 latlon=58.379 26.73 links=1 ~
+Home id=1 ~
+"""
+
+
+def drives_along_a_route_graph_in_the_map():
+    """a graph in the metres of a map that nobody anchored: refused until the robot is found in it, then driven"""
+    with BareHall() as hall:
+        until("a map is in use", 10, lambda: hall.place()["state"] == "searching", 0.2)
+        graph = hall.rest.do("POST", "/routes/import?name=ways&map=hall", GRAPH, {"Content-Type": "text/plain"})
+        check(graph["map"] == "hall", f"it counts from the map: {graph}")
+        status, _, said = hall.rest.call("POST", "/routes/plan", {"from": 5, "to": 4})
+        check(status == 409 and "Give it an anchor" in said["detail"], f"out of a map that lies nowhere: {said}")
+        # By numbers alone a way is planned, and not loaded.
+        blind = hall.rest.do("POST", "/routes/plan", {"from": 1, "to": 4, "name": "blind"})["mission"]
+        status, _, said = hall.rest.call("POST", "/execution/load", {"mission_id": blind["id"]})
+        check(status == 409 and "not found in it yet" in said["detail"], f"loaded before it is found: {status} {said}")
+        truth = hall.truth()
+        hall.rest.do("PUT", "/vehicle/pose", {name: truth[name] for name in ("lat", "lon", "heading_deg")})
+        hall.sticks(0.35)
+        until("it is found", 60, lambda: hall.place()["state"] == "known", 0.1)
+        hall.sticks(0.0)
+        until("it lies there", 10, lambda: hall.place()["placed"], 0.2)
+        hall.control.ask({"radio": {"swb": "up"}})
+        way = hall.rest.do("POST", "/routes/plan", {"from": "here", "to": 4, "graph": graph["id"], "name": "to 4"})
+        check(way["nodes"] == [1, 2, 3, 4], f"along the links: {way['nodes']}")
+        hall.start(way["mission"])
+        hall.watch(150, lambda: hall.rest.get("/execution")["state"] == "finished")
+        truth = hall.truth()
+        # The walls' metres are the map's.
+        east, north = (truth["lon"] - START[1]) / METRE_LON, (truth["lat"] - START[0]) / METRE_LAT
+        print(f"# it ended at {east:.2f} east, {north:.2f} north of the map's origin, {truth['heading_deg']:.0f} deg")
+        check(math.hypot(east - 9.5, north) < 0.35, f"it ended at {east:.2f}, {north:.2f}")
+        check(abs((truth["heading_deg"] - 180 + 180) % 360 - 180) < 6, f"it points to {truth['heading_deg']:.0f} deg")
+        check(truth["contacts"] == 0, f"it touched something: {truth}")
+
+
 def satellites_come_back_without_a_jump():
     """satellites that are heard again take over, and the estimate does not jump"""
     with Hall() as hall:
@@ -219,5 +260,5 @@ def is_told_when_it_was_carried():
 
 if __name__ == "__main__":
     sys.exit(run_cases([drives_by_the_map, drives_in_the_metres_of_the_map,
-                        is_laid_where_a_person_says_that_it_stands, satellites_come_back_without_a_jump,
-                        is_told_when_it_was_carried]))
+                        is_laid_where_a_person_says_that_it_stands, drives_along_a_route_graph_in_the_map,
+                        satellites_come_back_without_a_jump, is_told_when_it_was_carried]))

@@ -7,6 +7,7 @@ import {
   map_pixels,
   open_page,
   press,
+  press_it,
   save,
   seen_frame,
   tab,
@@ -16,6 +17,8 @@ import { expect, test } from './station';
 
 /** What stands there, in daylight. */
 const WALL: Color = [38, 36, 44];
+/** Of a route graph. */
+const LINK: Color = [95, 61, 196];
 const CELL_M = 0.1;
 const [COLUMNS, ROWS] = [200, 160];
 
@@ -122,4 +125,48 @@ test('a map that is laid and not in use is shown from the list', async ({ page, 
   // Whoever leaves the list drives by what is in use.
   await tab(page, 'Drive');
   await expect.poll(async () => (await map_pixels(page, [WALL])).length).toBe(0);
+});
+
+test('a route graph lies on the map that is planned in, and a way through it is added', async ({
+  page,
+  station,
+}) => {
+  await open_page(page, station.url);
+  await tab(page, 'Missions');
+  await press(page, 'Maps');
+  await page.getByLabel('Map files').setInputFiles(files());
+  await expect(page.getByText('The map “shed” is stored.')).toBeVisible();
+  await tab(page, 'Plan');
+  await press(page, 'Route graph');
+  const card = page.getByRole('region', { name: 'Route graph' });
+  const add = card.getByRole('button', { name: 'Add a graph file…' });
+  await expect(add).toHaveAttribute('aria-disabled', 'true');
+  await page.getByLabel('Counts from the map').selectOption('shed');
+  await expect.poll(async () => (await map_pixels(page, [WALL])).length).toBeGreaterThan(500);
+  expect(await map_pixels(page, [LINK])).toHaveLength(0);
+
+  // when a file is added to the map that is planned in
+  const text = [
+    'Node id=1 pose=-6 -5 0 links=2 ~',
+    'Node id=2 pose=6 -5 0 links=1 3 ~',
+    'Node id=3 pose=6 5 1.5708 links=2 ~',
+    'Home id=1 ~',
+  ].join('\n');
+  await card
+    .getByLabel('Graph file')
+    .setInputFiles({ name: 'ways.txt', mimeType: 'text/plain', buffer: Buffer.from(text) });
+  await expect(card.getByText('Nodes: 3, links: 4')).toBeVisible();
+  await expect.poll(async () => (await map_pixels(page, [LINK])).length).toBeGreaterThan(100);
+
+  // then ways through it become points of the map
+  const way = card.getByRole('button', { name: 'Add the way' });
+  await card.getByLabel('To node').fill('3');
+  await card.getByLabel('To node').blur();
+  await press_it(way);
+  await expect(card.getByRole('alert')).toContainText('no map is in use');
+  await card.getByLabel('From node').fill('1');
+  await card.getByLabel('From node').blur();
+  await press_it(way);
+  await expect(items(page)).toHaveCount(3);
+  await expect(items(page).last()).toContainText(/x 6(\.00)? m, y 5(\.00)? m/);
 });

@@ -50,8 +50,7 @@ import { paint_heat, paint_runs, type DrawnHeat, type DrawnRun } from './run_pai
 import type * as SeenPainter from './seen_painter';
 import type * as SitePainter from './site_painter';
 import { paint_space, type DrawnSpace } from './space_painter';
-import { paint_known, prepare_known, type DrawnKnown } from './known_painter';
-import { paint_slips, prepare_slips, type DrawnSlip } from './slip_painter';
+import { paint_kept, prepare_kept, type DrawnKept } from './kept_painter';
 import type { Stays } from './still';
 import { TrailLine } from './trail_line';
 
@@ -120,8 +119,7 @@ export class Scene {
   heat: DrawnHeat | null = null;
   drill: DrawnDrill | null = null;
   space: DrawnSpace | null = null;
-  slips: readonly DrawnSlip[] = [];
-  known: readonly DrawnKnown[] = [];
+  places: DrawnKept | null = null;
   fence: FenceDraft | null = null;
   site: SiteOnMap | null = null;
   site_edits: readonly SiteEdit[] = [];
@@ -150,9 +148,8 @@ export class Scene {
   #edited_waits = false;
   #last_drag: Drag | null = null;
 
-  keep({ slips, known }: KeptPlaces): void {
-    this.slips = prepare_slips(slips);
-    this.known = prepare_known(known);
+  keep(places: KeptPlaces): void {
+    this.places = prepare_kept(places);
   }
 
   take_drive(drive: DriveOnMap | null): void {
@@ -226,8 +223,7 @@ export class Scene {
       },
       (paint) => this.#paint_driven(paint),
       (paint) => {
-        if (this.slips.length > 0) paint_slips(paint, this.slips, palette());
-        if (this.known.length > 0) paint_known(paint, this.known, palette());
+        if (this.places) paint_kept(paint, this.places, palette());
       },
     ];
   }

@@ -2,6 +2,7 @@
 
 import type { Answer } from './answer';
 import { age, direction, metres, UNKNOWN } from './format';
+import type { GraphOnMap } from './node_graph';
 import type { LatLon } from './plan';
 import { say, told } from './say';
 import type { Slip } from './slips';
@@ -41,6 +42,8 @@ export interface KnownPlaceCalls {
 export interface KeptPlaces {
   readonly slips: readonly Slip[];
   readonly known: readonly KnownPlace[];
+  /** Along which ways are planned; null: none is looked at. */
+  readonly graph: GraphOnMap | null;
 }
 
 /** AprilTags of tag36h11. */

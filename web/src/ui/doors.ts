@@ -17,6 +17,7 @@ import type { RunCalls } from '../model/run_ports';
 import type { SeenCalls } from '../model/seen';
 import type { SiteMapCalls } from '../model/site_map';
 import type { KnownPlaceCalls } from '../model/known_places';
+import type { NodeGraphCalls } from '../model/node_graph';
 import type { MeCalls } from '../model/me';
 import type { SlipCalls } from '../model/slips';
 import type { Kept } from './edited';
@@ -29,6 +30,7 @@ export interface Doors {
   readonly runs: RunCalls;
   readonly slips: SlipCalls;
   readonly known: KnownPlaceCalls;
+  readonly graphs: NodeGraphCalls;
   readonly seen: SeenCalls;
   readonly sites: SiteMapCalls;
   readonly tiles: TileCalls;

@@ -59,6 +59,27 @@ export const items = {
     'Taps become points of the map “{name}”. Nobody has said where it lies: it is drawn about the robot, or anywhere.',
   counts_from_the_map: 'Counts from the map',
   no_map: 'none',
+  graph: 'Route graph',
+  graph_none: 'none is shown',
+  graph_in_map: '{name}, in the map “{map}”',
+  graph_size: 'Nodes: {nodes}, links: {links}',
+  graph_choose_first: 'Choose a route graph first.',
+  graph_of_another_map: 'The mission counts from the map “{frame}”, the graph from “{map}”.',
+  graph_say_where_to: 'Say to which node.',
+  graph_has_no_node: 'The graph has no node {id}.',
+  graph_not_drawn:
+    'Not all of it is drawn: it lies in the map “{map}”. Let the mission count from that map to see it.',
+  graph_from: 'From node',
+  graph_here: 'the robot',
+  graph_to: 'To node',
+  graph_add_way: 'Add the way',
+  graph_add: 'Add a graph file…',
+  graph_file: 'Graph file',
+  graph_needs_a_map:
+    'Let the mission count from a map first: the nodes of the file are metres of it.',
+  graph_line: 'Line {line}: {detail}',
+  graph_forget_name: 'Forget the route graph “{name}”?',
+  graph_missions_stay: 'Missions that were made of it stay.',
   map_point_by_another_map:
     'The points count from the map “{frame}”, and the robot uses “{other}”: the point would lie elsewhere.',
   map_point_without_its_map:
