@@ -24,7 +24,7 @@ export interface DrawnGraph {
 const NODE_PX = 5;
 const HOME_PX = 8;
 const ARROW_PX = 7;
-const NAME_PX = 15;
+const NAME_PX = 24;
 /** More in sight are a carpet of numbers. */
 const MOST_NAMES = 150;
 
