@@ -18,7 +18,6 @@ import { run_calls } from './link/runs';
 import { seen_calls } from './link/seen';
 import { site_map_calls } from './link/site_maps';
 import { known_place_calls } from './link/known_places';
-import { node_graph_calls } from './link/node_graphs';
 import { slip_calls } from './link/slips';
 import {
   camera_storage,
@@ -118,7 +117,7 @@ const doors = (map: MapCalls, late: Late): Doors => ({
   runs: run_calls,
   slips: slip_calls,
   known: known_place_calls,
-  graphs: node_graph_calls,
+  graphs: async () => (await import('./link/node_graphs')).node_graph_calls,
   seen: seen_calls,
   sites: site_map_calls,
   tiles: tile_calls,

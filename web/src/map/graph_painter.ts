@@ -16,7 +16,7 @@ interface DrawnLink {
   readonly to: PlanePoint;
   readonly one_way: boolean;
 }
-export interface DrawnGraph {
+interface DrawnGraph {
   readonly nodes: readonly DrawnNode[];
   readonly links: readonly DrawnLink[];
 }
@@ -28,7 +28,7 @@ const NAME_PX = 24;
 /** More in sight are a carpet of numbers. */
 const MOST_NAMES = 150;
 
-export const prepare_graph = ({ nodes, links }: GraphOnMap): DrawnGraph => ({
+const prepare_graph = ({ nodes, links }: GraphOnMap): DrawnGraph => ({
   nodes: nodes.map((node) => ({ at: to_plane(node), name: String(node.id), home: node.home })),
   links: links.map(({ from, to, one_way }) => ({
     from: to_plane(from),
@@ -36,6 +36,14 @@ export const prepare_graph = ({ nodes, links }: GraphOnMap): DrawnGraph => ({
     one_way,
   })),
 });
+
+/** The last one: it changes seldom, and is drawn at every frame. */
+let kept: { graph: GraphOnMap; drawn: DrawnGraph } | null = null;
+
+const drawn_of = (graph: GraphOnMap): DrawnGraph => {
+  if (kept?.graph !== graph) kept = { graph, drawn: prepare_graph(graph) };
+  return kept.drawn;
+};
 
 const paint_links = (paint: Paint, links: readonly DrawnLink[], colors: Palette): void => {
   const { context, width_px, height_px } = paint;
@@ -61,7 +69,8 @@ const paint_links = (paint: Paint, links: readonly DrawnLink[], colors: Palette)
   stroke_cased(context, colors.casing, colors.home, 2);
 };
 
-export const paint_graph = (paint: Paint, { nodes, links }: DrawnGraph, colors: Palette): void => {
+export const paint_graph = (paint: Paint, graph: GraphOnMap, colors: Palette): void => {
+  const { nodes, links } = drawn_of(graph);
   const { context, width_px, height_px } = paint;
   context.save();
   paint_links(paint, links, colors);

@@ -206,6 +206,7 @@ export class FieldMap implements MapCalls {
 
   show_places(kept: KeptPlaces): void {
     this.#scene.keep(kept);
+    if (kept.graph) this.#load_site();
     this.#map.render();
   }
 

@@ -223,7 +223,10 @@ export class Scene {
       },
       (paint) => this.#paint_driven(paint),
       (paint) => {
-        if (this.places) paint_kept(paint, this.places, palette());
+        if (!this.places) return;
+        const { graph } = this.places;
+        if (graph) this.site_painter?.paint_graph(paint, graph, palette());
+        paint_kept(paint, this.places, palette());
       },
     ];
   }

@@ -8,6 +8,8 @@ import { stroke_cased, type Paint } from './canvas';
 import { is_dark, type Palette } from './palette';
 import { to_plane, units_per_m } from './projection';
 
+export { paint_graph } from './graph_painter'; // it lies on such a map
+
 interface Shades {
   readonly occupied: number;
   readonly free: number;

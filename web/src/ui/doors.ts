@@ -30,7 +30,8 @@ export interface Doors {
   readonly runs: RunCalls;
   readonly slips: SlipCalls;
   readonly known: KnownPlaceCalls;
-  readonly graphs: NodeGraphCalls;
+  /** Fetched when it is wanted first. */
+  readonly graphs: () => Promise<NodeGraphCalls>;
   readonly seen: SeenCalls;
   readonly sites: SiteMapCalls;
   readonly tiles: TileCalls;

@@ -12,35 +12,27 @@ import {
   type NodeGraphWithNodes,
 } from '../model/node_graph';
 import { say } from '../model/say';
-import type { Dialogs } from './dialogs.svelte';
-import type { Editor } from './editor.svelte';
-import type { MapPlanner } from './map_planner.svelte';
+import type { Station } from './station.svelte';
 
 export class NodeGraphs {
   /** Null: not read yet. */
   items = $state.raw<readonly NodeGraph[] | null>(null);
   /** Null: none is looked at. */
   shown = $state.raw<NodeGraphWithNodes | null>(null);
-  /** The card is open. */
-  open = $state(false);
   busy = $state(false);
   failure = $state<string | null>(null);
   /** Of the one that was just added. */
   notes = $state.raw<readonly GraphNote[]>([]);
   on_map = $derived.by<GraphOnMap | null>(() =>
-    this.open && this.shown ? graph_on_map(this.shown, this.#in_map.by) : null,
+    this.shown ? graph_on_map(this.shown, this.#station.in_map.by) : null,
   );
 
   readonly #calls: NodeGraphCalls;
-  readonly #editor: Editor;
-  readonly #in_map: MapPlanner;
-  readonly #dialogs: Dialogs;
+  readonly #station: Station;
 
-  constructor(calls: NodeGraphCalls, editor: Editor, in_map: MapPlanner, dialogs: Dialogs) {
+  constructor(calls: NodeGraphCalls, station: Station) {
     this.#calls = calls;
-    this.#editor = editor;
-    this.#in_map = in_map;
-    this.#dialogs = dialogs;
+    this.#station = station;
   }
 
   async refresh(): Promise<void> {
@@ -71,7 +63,7 @@ export class NodeGraphs {
   }
 
   async forget(graph: NodeGraph): Promise<void> {
-    const sure = await this.#dialogs.ask({
+    const sure = await this.#station.dialogs.ask({
       title: say('graph_forget_name', { name: graph.name }),
       text: say('graph_missions_stay'),
       yes: say('forget_it'),
@@ -90,7 +82,7 @@ export class NodeGraphs {
     const answer = await this.#calls.plan({ graph: this.shown.id, from, to });
     this.busy = false;
     this.failure = answer.ok ? null : refusal_text(answer.refusal);
-    if (answer.ok) this.#editor.do(append_way(answer.value));
+    if (answer.ok) this.#station.editor.do(append_way(answer.value));
   }
 
   async #read(id: string): Promise<void> {

@@ -6,12 +6,12 @@ import type { Station } from './station.svelte';
 
 /** Called where effects may begin. */
 export const keep_places_in_step = (station: Station): void => {
-  const { graphs, known, map, slips } = station;
+  const { known, map, slips } = station;
   $effect(() =>
     map.show_places({
       slips: slips.on_map,
       known: known.on_map,
-      graph: station.tab === 'plan' && station.drawing === null ? graphs.on_map : null,
+      graph: station.tab === 'plan' && station.drawing === null ? station.graph_on_map : null,
     }),
   );
   // As long as somebody sees them: in the log, or on the map.

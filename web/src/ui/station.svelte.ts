@@ -3,6 +3,7 @@
 import { untrack } from 'svelte';
 
 import { refusal_text } from '../model/answer';
+import type { GraphOnMap } from '../model/node_graph';
 import type { Found } from '../model/makings';
 import { activity_mark } from '../model/modes';
 import { EMPTY_PLAN, spots, type LatLon } from '../model/plan';
@@ -44,7 +45,6 @@ import { keep_site_in_step } from './site_on_map.svelte';
 import { Grounds } from './grounds.svelte';
 import { SiteMaps } from './site_maps.svelte';
 import { KnownPlaces } from './known_places.svelte';
-import { NodeGraphs } from './node_graphs.svelte';
 import { keep_places_in_step } from './places_on_map.svelte';
 import { Slips } from './slips.svelte';
 import { Shaping } from './shaping.svelte';
@@ -118,7 +118,9 @@ export class Station {
   readonly runs: Runs;
   readonly slips: Slips;
   readonly known: KnownPlaces;
-  readonly graphs: NodeGraphs;
+  readonly node_graphs: Doors['graphs'];
+  /** The route graph whose card is open; null: none is. */
+  graph_on_map = $state.raw<GraphOnMap | null>(null);
   readonly seen: Seen;
   readonly sites: SiteMaps;
   readonly in_map: MapPlanner;
@@ -166,7 +168,7 @@ export class Station {
     this.grounds = new Grounds(doors.tiles, doors.ground, this.notices, this.dialogs);
     this.sites = new SiteMaps(doors.sites, this.live, this.notices, this.dialogs);
     this.in_map = new MapPlanner(this.editor, this.sites);
-    this.graphs = new NodeGraphs(doors.graphs, this.editor, this.in_map, this.dialogs);
+    this.node_graphs = doors.graphs;
     this.standing = new Standing(this.live, this.pilot);
     this.drills = new Drills(doors.drill);
     this.makings = new Makings(doors.kept.makings, this.editor);

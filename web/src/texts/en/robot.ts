@@ -214,9 +214,6 @@ export const robot = {
   rb_map_name_taken_configured:
     'the name "{name}" is taken by that of the configuration: give another one, or rename that map',
   rb_counts_from: 'the mission counts from the map "{map}": {why}',
-  rb_no_way_of_nodes: 'no way leads from node {from} to node {to}',
-  rb_no_way_out_of_map:
-    'no way leads from node {from} to node {to}: it would lead between places on the earth and the map "{map}", and nobody knows where on the earth that lies. Give it an anchor',
   rb_not_found_yet:
     'the robot is not found in it yet: drive some metres by hand, or say where it stands (a tap on the map)',
   rb_not_found_yet_why: 'the robot is not found in it yet ({why})',

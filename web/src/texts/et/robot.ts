@@ -210,9 +210,6 @@ export const robot = {
   rb_map_name_taken: 'nimi „{name}“ on kaardil {n}: anna teine nimi või nimeta see kaart ümber',
   rb_map_name_taken_configured: 'nimi „{name}“ on seadistuse kaardil: anna teine nimi',
   rb_counts_from: 'ülesanne loeb kaardilt „{map}“: {why}',
-  rb_no_way_of_nodes: 'sõlmest {from} sõlme {to} ei vii ükski tee',
-  rb_no_way_out_of_map:
-    'sõlmest {from} sõlme {to} ei vii ükski tee: see viiks maa ja kaardi „{map}“ vahel, aga keegi ei tea, kus see kaart maa peal asub. Anna sellele ankur',
   rb_not_found_yet:
     'robotit pole sealt veel leitud: sõida mõni meeter käsitsi või ütle, kus see seisab (puuduta kaarti)',
   rb_not_found_yet_why: 'robotit pole sealt veel leitud ({why})',

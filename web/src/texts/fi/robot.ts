@@ -212,9 +212,6 @@ export const robot = {
     'nimi ”{name}” on kartalla {n}: anna toinen nimi tai nimeä se kartta uudelleen',
   rb_map_name_taken_configured: 'nimi ”{name}” on asetusten kartalla: anna toinen nimi',
   rb_counts_from: 'tehtävä lasketaan kartasta ”{map}”: {why}',
-  rb_no_way_of_nodes: 'solmusta {from} solmuun {to} ei ole reittiä',
-  rb_no_way_out_of_map:
-    'solmusta {from} solmuun {to} ei ole reittiä: se kulkisi maan ja kartan ”{map}” välillä, eikä kukaan tiedä, missä kartta maan päällä on. Anna sille ankkuri',
   rb_not_found_yet:
     'robottia ei ole vielä löydetty siltä: aja muutama metri käsin tai kerro, missä se seisoo (napauta karttaa)',
   rb_not_found_yet_why: 'robottia ei ole vielä löydetty siltä ({why})',

@@ -2,5 +2,6 @@
 
 import { robot_around } from './robot_around';
 import { robot_files } from './robot_files';
+import { robot_graph } from './robot_graph';
 
-export const late = { ...robot_files, ...robot_around } as const;
+export const late = { ...robot_files, ...robot_around, ...robot_graph } as const;

@@ -216,9 +216,6 @@ export const robot = {
   rb_map_name_taken_configured:
     'il nome «{name}» è della mappa della configurazione: danne un altro',
   rb_counts_from: 'la missione conta dalla mappa «{map}»: {why}',
-  rb_no_way_of_nodes: 'nessun percorso porta dal nodo {from} al nodo {to}',
-  rb_no_way_out_of_map:
-    'nessun percorso porta dal nodo {from} al nodo {to}: passerebbe fra luoghi sulla terra e la mappa «{map}», e nessuno sa dove questa stia sulla terra. Dalle un’ancora',
   rb_not_found_yet:
     'il robot non vi è ancora trovato: guida qualche metro a mano, o di’ dove si trova (un tocco sulla mappa)',
   rb_not_found_yet_why: 'il robot non vi è ancora trovato ({why})',

@@ -214,9 +214,6 @@ export const robot = {
   rb_map_name_taken_configured:
     'navnet «{name}» er brukt av kartet fra konfigurasjonen: gi et annet',
   rb_counts_from: 'oppdraget regnes fra kartet «{map}»: {why}',
-  rb_no_way_of_nodes: 'ingen vei fører fra node {from} til node {to}',
-  rb_no_way_out_of_map:
-    'ingen vei fører fra node {from} til node {to}: den ville gå mellom steder på jorden og kartet «{map}», og ingen vet hvor på jorden det ligger. Gi det et anker',
   rb_not_found_yet:
     'roboten er ikke funnet i det ennå: kjør noen meter for hånd, eller si hvor den står (et trykk på kartet)',
   rb_not_found_yet_why: 'roboten er ikke funnet i det ennå ({why})',
