@@ -8,6 +8,7 @@ import { is_known_sentence, language_said, robot_says } from '../src/model/robot
 import { IN_ENGLISH, speak } from '../src/model/say';
 import { english } from '../src/texts/en';
 import { late as english_late } from '../src/texts/en/late';
+import { robot_events } from '../src/texts/en/robot_events';
 import { finnish } from '../src/texts/fi';
 import { late as finnish_late } from '../src/texts/fi/late';
 
@@ -41,6 +42,25 @@ const SOURCES: readonly (readonly [files: RegExp, sentences: RegExp])[] = [
   [/^robot\/guard\/watched\.cpp$/, /(?:told\(|again =|[?:])\s*"([a-z]\w* [^"]+)"[;:)\s]/g],
   [/^nav\/around\/around\.cpp$/, /return "([a-z]\w* \w+ [^"]+)";/g],
   [/^robot\/modes\/around\.cpp$/, /(?:"no_way_around",|\?) "([a-z]\w* [^"]+[a-z])"[);\n]/g],
+  [
+    /^robot\/.*\.cpp$/,
+    /event\((?:base::)?Severity::\w+, (?:\w+ \? )?"\w+"(?: : "\w+")?,\s*(?:[\w.]+\s*\? )?"([^"]+)"(?:\)|\s*:)/g,
+  ],
+  [/^robot\/.*\.cpp$/, /change_mode\(ModeCause::\w+, (?:\w+ \? )?"([^"]+)"(?:\)| :)/g],
+  [
+    /^robot\/modes\/(?:\w+)\.hpp$/,
+    /(?:return|lock\(|cause_ =|kSilent =|[?:]) "([a-z]\w* [^"]*[^" ])"/g,
+  ],
+  [/^robot\/modes\/self_driving\.cpp$/, /reached\("\w+",\s*"([^"]+)"\)/g],
+  [/^robot\/radio\/keys\.cpp$/, /\{"[\w.]+", "([^"]+)", RadioDeed/g],
+  [/^robot\/safety\/(?:estimate|votes)_watch\.cpp$/, /return "([^"]+)";|"\w+",\s*"([^"]+)"\)/g],
+  [/^robot\/safety\/estimate_watch\.cpp$/, /health\.\w+, "([^"]+)"\}/g],
+  [/^robot\/safety\/safety\.cpp$/, /\? "(none)" :/g],
+  [/^robot\/safety\/reset_latch\.hpp$/, /why = "([^"]+)"/g],
+  [/^robot\/world\.hpp$/, /end_good\("([^"]+)"/g],
+  [/^app\/host_watch\.cpp$/, /(?:"clock_unset",|std::string\()\s*"([^"]+)"/g],
+  [/^app\/station_opening\.cpp$/, /tell_drawing\("\w+", "([^"]+)"\)/g],
+  [/^services\/\w+\.cpp$/, /Severity::\w+, "\w+",\s*"([^"]+)"\}?\)/g],
   [/^nav\/sense\/health\.cpp$/, /(?:say\(Eye::\w+,|[?:]) "([a-z]\w* [^"]+)"\s?[:)]/g],
 ];
 /** Said in English in all languages; the list only ever gets shorter. */
@@ -56,6 +76,48 @@ const STILL: ReadonlySet<string> = new Set([
   'there is no map yet that east and north could be of: give lat and lon, load a mission, or set nav.estimate.map_lat and map_lon',
   'there is no position from GNSS that could be anchored',
 ]);
+
+/** Where the server joins what stands between two figures or names from parts. */
+const JOINED: readonly string[] = [
+  'disarmed |because |somebody else commands the base',
+  'emergency stop| by |the page or a script',
+  'emergency stop| by |the radio',
+  'emergency stop| by |the operator',
+  'emergency stop| by |the button at the base',
+  'emergency stop| by |the bumper',
+  'paused |by the radio',
+  'stopped |by the radio',
+  'home| missed by',
+  'is taken by |map',
+  'is taken by |that of the configuration|: give another one, or rename that map',
+  'deg|: the robot will creep at first',
+  'no wall is seen on the |left',
+  'no wall is seen on the |right',
+  'no wall is seen on the |left| within',
+  'no wall is seen on the |right| within',
+  'no |landmark| is seen',
+  'no |landmark| is seen within',
+  'no |landmark| is seen any more',
+  'its way ends before the |landmark| is passed',
+  'the hand on the speed |is silent|: let go and hold it again, or hold the robot (HOLD) and go on',
+  'the hand on the speed |has left|: let go and hold it again, or hold the robot (HOLD) and go on',
+  'ago|: waiting',
+  'while it was disarmed|: look where the robot stands',
+  'position| set anew, moved by',
+  'heading| set anew, moved by',
+  'the estimate| set anew, moved by',
+  'the robot stands at |item',
+  'the robot stands at |the given point|: positions are moved by',
+  'acknowledged |by the operator',
+  'deg/s| farther left| than',
+  'deg/s| farther right| than',
+  'deg| farther left| than',
+  'deg| farther right| than',
+  'is |opening',
+  'is |down',
+  'is |faulty',
+  'is |failed',
+];
 
 afterEach(() => speak(() => IN_ENGLISH));
 const all_finnish = { ...finnish, ...finnish_late };
@@ -128,6 +190,56 @@ describe('what the robot says', () => {
   });
 
   test.each([
+    ['item 2 reached', 'kohta 2 saavutettu'],
+    ['mission "north; 2" revision 3 started', 'tehtävä ”north; 2”, versio 3, alkoi'],
+    ['mode AUTO: mission resumed', 'tila AUTO: tehtävä jatkuu'],
+    ['mode HOLD: by the operator', 'tila HOLD: käyttäjän käskystä'],
+    ['mode HOLD: item 3: the row is lost', 'tila HOLD: kohta 3: rivi on kadonnut'],
+    ['GNSS fix is rtk_fixed', 'GNSS-ratkaisu on RTK fix'],
+    ['no usable fix: none', 'ei käyttökelpoista ratkaisua: ei sijaintia'],
+    [
+      'fix rtk_float, waiting 4 s more, at most, to see whether its positions wander',
+      'ratkaisu RTK float, enintään 4 s vielä, että nähdään, vaeltavatko sen sijainnit',
+    ],
+    [
+      'fix rtk_fixed, but its positions contradicted other sensors, 3 s ago: waiting 9 s more to trust it',
+      'ratkaisu RTK fix, mutta sen sijainnit olivat ristiriidassa muiden anturien kanssa 3 s sitten: luottamiseen vielä 9 s',
+    ],
+    [
+      'fix rtk_fixed, waiting 6 s more to trust it: it had no fix 4 s ago',
+      'ratkaisu RTK fix, luottamiseen vielä 6 s: sillä ei ollut ratkaisua 4 s sitten',
+    ],
+    ['uncertain by 2 deg', 'epävarmuus 2°'],
+    [
+      'SWC middle: mode AUTO refused: the emergency stop is latched',
+      'SWC keskellä: tila AUTO, evätty: hätäseis on lukittuna',
+    ],
+    [
+      "the gyro turns 3.1 deg/s farther left than the compass, odometry and the two antennas' heading say; it repeats itself: it is left out",
+      'gyro kääntyy 3.1°/s enemmän vasemmalle kuin kompassi, odometria ja kahden antennin suunta; se toistaa itseään: se jätetään pois',
+    ],
+    ['the control loop wakes up to 65.5 ms late', 'ohjaussilmukka herää jopa 65.5 ms myöhässä'],
+    [
+      'gnss is opening; scanner is faulty: it is silent',
+      'gnss avautuu; scanner on häiriössä: siitä ei kuulu mitään',
+    ],
+    [
+      'nav.speed.max_mps was changed from 1.5 to 2 by anna',
+      'nav.speed.max_mps: oli 1.5, nyt 2; muutti anna',
+    ],
+    [
+      'anna (phone) took control from bert by force: the moon is full',
+      'anna (phone) otti ohjauksen väkisin, edellinen bert: the moon is full',
+    ],
+    ['none', 'ei mitään'],
+    ['gnss+odometry', 'GNSS ja odometria'],
+  ])('is said of what happens every day: %s', (text, words) => {
+    in_finnish();
+    expect(robot_says(text)).toBe(words);
+    expect(language_said(text)).toBeUndefined();
+  });
+
+  test.each([
     'blocked: the moon is full, 1.2 m ahead; it waits until the way is clear',
     'blocked: something stands in the way, 1.2 m ahead; the moon is full',
     'the guard is overridden by anna: the moon is full',
@@ -137,8 +249,11 @@ describe('what the robot says', () => {
     'can0: two bases answer; can1: somebody else commands the base',
     'charge is 20 %; the moon is full',
     'the base reports: motor 1 too hot',
-    'fix rtk_float, waiting 4 s more, at most, to see whether its positions wander',
-    'fix rtk_fixed, but its positions contradicted other sensors, 3 s ago: waiting 9 s more to trust it',
+    'fix rtk_fixed, but the moon is full',
+    'mode HOLD: the moon is full',
+    'gnss: the moon is full',
+    'SWC middle: sing',
+    'the gyro and the moon differ by 3.0 deg within 5.0 s, and it cannot be told which one is wrong',
   ])('stays all English where a part is not known: %s', (text) => {
     in_finnish();
     expect(robot_says(text)).toBe(text);
@@ -205,7 +320,11 @@ describe('what the robot says', () => {
 
   test('is never taken for a shorter sentence that begins the same', () => {
     in_finnish();
-    const sample: Readonly<Record<string, string>> = { place: 'x', value: '7', parameter: 'x.y' };
+    const sample: Readonly<Record<string, string>> = {
+      place: 'x',
+      parameter: 'x.y',
+      swi: 'SWA',
+    };
     const fill = (text: string, why: string): string =>
       text
         .replaceAll(/\{(why|what|where)\}/g, why)
@@ -238,6 +357,31 @@ describe('what the robot says', () => {
     }
     expect(seen).toBeGreaterThan(60);
     expect([...missing].sort()).toEqual([...STILL].sort());
+  });
+
+  test('every day is held to what the server says: no sentence of it stays behind alone', () => {
+    const told = readdirSync(SERVER, { recursive: true })
+      .map((name) => String(name))
+      .filter((name) => /\.[ch]pp$/.test(name))
+      .map((name) => readFileSync(join(SERVER, name), 'utf8'))
+      .map((source) => source.replace(/^\s*\/\/.*$/gm, '').replace(/"\s*\n\s*"/g, ''))
+      .flatMap((source) => [...source.matchAll(/"((?:[^"\\\n]|\\.)+)"/g)])
+      .map(([, text = '']) => text.replaceAll('\\"', '"'))
+      .join('\n');
+    /** In whole words. */
+    const stands = (text: string): boolean => {
+      const begins = /^\w/.test(text) ? String.raw`(?<!\w)` : '';
+      const ends = /\w$/.test(text) ? String.raw`(?!\w)` : '';
+      const words = text.replace(/[.*+?^${}()|[\]\\]/g, String.raw`\$&`);
+      return told.includes(text) && new RegExp(begins + words + ends).test(told);
+    };
+    const parts = Object.values(robot_events)
+      .flatMap((text) => text.split(/\{\w+\}/))
+      .map((part) => part.replace(/^\W+|\W+$/g, ''));
+    const cut_of = (part: string): string =>
+      JOINED.find((each) => each.replaceAll('|', '') === part) ?? part;
+    const gone = parts.filter((part) => !cut_of(part).split('|').every(stands));
+    expect(gone).toEqual([]);
   });
 
   test('of a map that lies nowhere is what the page looks for', () => {

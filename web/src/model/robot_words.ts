@@ -4,6 +4,7 @@
 // is live (texts/en/late.ts); until then those are not known.
 
 import { robot } from '../texts/en/robot';
+import { fix_words, type Fix } from './vehicle';
 import { filled, language_now, late_now, say_plain, type LateTexts, type PlainKey } from './say';
 
 type Key = keyof typeof robot | keyof LateTexts;
@@ -27,6 +28,11 @@ const FILLED: Readonly<Record<string, string>> = {
   ),
   value: String.raw`[-+.\de]+`,
   parameter: String.raw`[\w.]+`,
+  device: String.raw`[\w.]+`,
+  swi: 'SW[A-D]',
+  // Names of people and devices, and values, as they are; what a person wrote.
+  ...Object.fromEntries(['who', 'other', 'old', 'new'].map((name) => [name, '[^;]+?'])),
+  words: '.+',
   // As it stands in a file.
   column: '.+?',
 };
@@ -92,6 +98,13 @@ const joined_in_words = (text: string, depth: number): string | null => {
   return null;
 };
 
+/** A fix has its own words on the page: "RTK fixed", and "no fix" within a sentence. */
+const plain_words = (name: string, value: string): string => {
+  if (name !== 'fix' || !Object.hasOwn(fix_words, value)) return value;
+  const words = fix_words[value as Fix];
+  return /^.\p{Ll}/u.test(words) ? words.charAt(0).toLowerCase() + words.slice(1) : words;
+};
+
 /** @return null: the pattern does not fit, or what fills it is not known */
 const filled_in_words = ({ key, names, pattern }: Sentence, text: string, depth: number) => {
   const match = pattern.exec(text);
@@ -99,7 +112,7 @@ const filled_in_words = ({ key, names, pattern }: Sentence, text: string, depth:
   const values: [string, string][] = [];
   for (const [k, name] of names.entries()) {
     const value = match[k + 1] ?? '';
-    const words = SENTENCES.has(name) ? in_words(value, depth + 1) : value;
+    const words = SENTENCES.has(name) ? in_words(value, depth + 1) : plain_words(name, value);
     if (words === null) return null;
     values.push([name, words]);
   }

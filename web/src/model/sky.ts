@@ -2,6 +2,7 @@
 
 import { fixed } from './figures';
 import { count, degrees_text, metres, number_text } from './format';
+import { robot_says } from './robot_words';
 import { say } from './say';
 import type { Estimator, Learned, Position } from './vehicle';
 
@@ -139,7 +140,7 @@ export const position_lines = (
         : metres(position.horizontal_accuracy_m),
     ],
     [say('heading_1'), degrees_text(position.heading_accuracy_deg)],
-    [say('from'), position.source ?? '—'],
+    [say('from'), robot_says(position.source ?? '—')],
   ];
   if (!estimator) return out;
   out.push([say('compass_is_off_by'), degrees_text(estimator.compass_bias_deg)]);

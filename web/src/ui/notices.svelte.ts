@@ -43,11 +43,27 @@ export class Notices {
     return this.log[0]?.time ?? '';
   }
 
-  show(level: Level, text: string, about: string | null = null, passing = false): void {
+  /** @param said words that are looked up whenever they are drawn follow the language of the page */
+  show(
+    level: Level,
+    said: string | (() => string),
+    about: string | null = null,
+    passing = false,
+  ): void {
+    const words = typeof said === 'string' ? (): string => said : said;
+    const text = words();
     const rest = this.shown.filter(
       (notice) => notice.text !== text && (about === null || notice.about !== about),
     );
-    const notice = { id: this.#next, level, text, about, passing };
+    const notice: Notice = {
+      id: this.#next,
+      level,
+      about,
+      passing,
+      get text() {
+        return words();
+      },
+    };
     this.#next += 1;
     this.shown = [...rest, notice].slice(-AT_MOST);
     if (level !== 'error') setTimeout(() => this.dismiss(notice.id), SHOWN_MS[level]);
@@ -81,7 +97,7 @@ export class Notices {
     if (this.#enter([event]).length === 0) return false;
     if (worth_a_word(event)) {
       const level = event.level === 'error' ? 'warning' : event.level;
-      this.show(level, words_of(event), event_about(event));
+      this.show(level, () => words_of(event), event_about(event));
     }
     return true;
   }
@@ -93,7 +109,7 @@ export class Notices {
     if (missed_since === null) return;
     const away = fresh.filter((event) => event.time > missed_since && ended_driving(event));
     for (const event of away.slice(-MISSED_AT_MOST))
-      this.show('error', say('meanwhile_text', { text: words_of(event) }));
+      this.show('error', () => say('meanwhile_text', { text: words_of(event) }));
   }
 
   /** @return those that were new */

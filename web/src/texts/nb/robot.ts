@@ -182,24 +182,14 @@ export const robot = {
   rb_behind_left: '{m} m bak til venstre',
   rb_behind_right: '{m} m bak til høyre',
   rb_comparing: 'gjerde og oppdrag blir sammenlignet: prøv igjen',
-  rb_no_tag_camera: 'det er ikke satt opp noe kamera som leser merker',
   rb_none_running: 'intet oppdrag kjører eller er satt på pause',
   rb_no_position_2s: 'det kom ingen posisjon på 2 s',
   rb_none_needed_map: 'trengs ikke: kartet viser hvor roboten er',
-  rb_not_newer_cloud: 'ikke nyere enn skyen før, eller uten odometri',
-  rb_not_newer_scan: 'ikke nyere enn skanningen før, eller uten odometri',
-  rb_not_interrupted: 'radioen avbrøt ingenting',
   rb_times_doubled:
     'posisjonene brukes ikke: mottakerens tider er doble, i feil rekkefølge eller for gamle',
   rb_no_place_at_all: 'posisjonen er ikke kjent, og oppdraget sier ikke om noe sted hvor det er',
   rb_moves_stop: 'roboten beveger seg: stopp den først',
-  rb_map_began_load: 'robotens kart begynte i mellomtiden: last på nytt',
-  rb_map_began_try: 'robotens kart begynte i mellomtiden: prøv på nytt',
-  rb_target_old: 'målets tid er for gammel',
-  rb_rate_unmeasured: 'svinghastigheten måles ikke',
   rb_cannot_pivot: 'dette kjøretøyet kan ikke svinge på stedet',
-  rb_cannot_pivot_dock: 'dette kjøretøyet kan ikke svinge på stedet: det dokker ikke ved noe merke',
-  rb_trailer_dock: 'med tilhenger dokkes det ikke ved noe merke',
   rb_fits_elsewhere: 'det som passer, ligger et annet sted',
   rb_paused_operator: 'satt på pause av operatøren',
   rb_stopped_operator: 'stoppet av operatøren',
@@ -209,10 +199,6 @@ export const robot = {
     'kjør noen meter for hånd: stedet som ble sagt, gjelder når roboten er funnet i kartet, for ingen vet hvor på jorden kartet ligger',
   rb_no_tap_before:
     'kjør noen meter for hånd: et trykk hjelper ikke før, for ingen vet hvor på jorden kartet ligger',
-  rb_map_name_taken:
-    'navnet «{name}» er brukt av kart {n}: gi et annet, eller gi det kartet nytt navn',
-  rb_map_name_taken_configured:
-    'navnet «{name}» er brukt av kartet fra konfigurasjonen: gi et annet',
   rb_counts_from: 'oppdraget regnes fra kartet «{map}»: {why}',
   rb_not_found_yet:
     'roboten er ikke funnet i det ennå: kjør noen meter for hånd, eller si hvor den står (et trykk på kartet)',
