@@ -1,0 +1,75 @@
+import View from 'ol/View';
+import { describe, expect, test } from 'vitest';
+
+import { from_plane } from '../src/map/projection';
+import { fit_in, free_part, pixel_of } from '../src/map/sight';
+import type { LatLon } from '../src/model/plan';
+
+const SIZE = [1000, 800] as const;
+const STOP = { left: 776, top: 684, right: 976, bottom: 776 };
+const CAMERA = { left: 376, top: 116, right: 636, bottom: 360 };
+
+/** Beside a panel of 360 px and below a header of 100. */
+const free = free_part(SIZE, { top: 100, right: 0, bottom: 0, left: 360 });
+
+const view_of = (): View => {
+  const view = new View({ center: [0, 0], zoom: 18, maxZoom: 25, constrainRotation: false });
+  view.padding = [100, 0, 0, 360];
+  view.setViewportSize([...SIZE]);
+  return view;
+};
+const at = (right_m: number, up_m: number): LatLon => from_plane([right_m, up_m]);
+const in_it = ([x, y]: readonly [number, number], box: typeof STOP): boolean =>
+  x > box.left && x < box.right && y > box.top && y < box.bottom;
+
+describe('what is fitted into the map', () => {
+  const across = [at(0, 60), at(70, 0)]; // from the upper left to the lower right
+
+  test('lies as large as it can where nothing stands over it', () => {
+    const view = view_of();
+    fit_in(view, across, free, [], 21);
+    const [first, last] = across.map((each) => pixel_of(view, each, free));
+    expect(last?.[0]).toBeCloseTo(912, 0);
+    expect((last?.[0] ?? 0) - (first?.[0] ?? 0)).toBeCloseTo(640 - 48 - 88, 0);
+  });
+
+  test.each([
+    ['the stop button', [STOP]],
+    ['the camera', [CAMERA]],
+    ['either', [STOP, CAMERA]],
+  ])('has no place beneath %s', (_, over) => {
+    const view = view_of();
+    // High enough to reach into both corners.
+    const points = [at(0, 66), at(70, 0)];
+    fit_in(view, points, free, [], 21);
+    const before = points.map((each) => pixel_of(view, each, free));
+    expect(over.every((box) => before.some((pixel) => in_it(pixel, box)))).toBe(true);
+
+    fit_in(view, points, free, over, 21);
+    for (const pixel of points.map((each) => pixel_of(view, each, free))) {
+      expect(over.some((box) => in_it(pixel, box))).toBe(false);
+      expect(pixel[0]).toBeGreaterThan(360 + 40);
+      expect(pixel[0]).toBeLessThan(1000 - 80);
+      expect(pixel[1]).toBeGreaterThan(100 + 40);
+      expect(pixel[1]).toBeLessThan(800 - 40);
+    }
+  });
+
+  test('stays as it is where what stands over the map covers no place of it', () => {
+    const points = [at(0, 0), at(70, 60)]; // from the lower left to the upper right
+    const [plain, beside] = [view_of(), view_of()];
+    fit_in(plain, points, free, [], 21);
+    fit_in(beside, points, free, [STOP, CAMERA], 21);
+    expect(beside.getResolution()).toBe(plain.getResolution());
+    expect(beside.getCenter()).toEqual(plain.getCenter());
+  });
+
+  test('lies beneath it rather than nowhere', () => {
+    const view = view_of();
+    const all = { left: 0, top: 0, right: 1000, bottom: 800 };
+    fit_in(view, across, free, [all], 21);
+    const plain = view_of();
+    fit_in(plain, across, free, [], 21);
+    expect(view.getResolution()).toBe(plain.getResolution());
+  });
+});
