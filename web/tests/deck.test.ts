@@ -17,7 +17,9 @@ const vehicle = (given: object = {}, speed_mps: number | null = 0.8): Vehicle =>
   }) as unknown as Vehicle;
 
 const said = (of: Vehicle | null): string[] =>
-  deck_figures(of).map(({ label, value, unit }) => `${label}: ${value} ${unit}`.trim());
+  deck_figures(of).map(({ label, value, unit, side }) =>
+    `${label}: ${value} ${unit} ${side?.word ?? ''}`.trim(),
+  );
 
 describe('the figures of the deck', () => {
   test('are a number and what it is a number of', () => {
@@ -47,13 +49,12 @@ describe('the figures of the deck', () => {
     expect(said(blocked).slice(2)).toEqual(['To drive: 51.3 m', 'Time left: —']);
   });
 
-  test('tell the side by an arrow where there is no room for a word', () => {
-    const brief = (off_m: number | null) =>
-      deck_figures(vehicle({ cross_track_m: off_m }))[1]?.brief;
-    expect(brief(0.034)).toEqual({ unit: 'cm', side: '◂' });
-    expect(brief(-0.25)).toEqual({ unit: 'm', side: '▸' });
-    expect(brief(0)).toEqual({ unit: 'cm', side: '' });
-    expect(brief(null)).toEqual({ unit: '', side: '' });
+  test('tell the side by an arrow: beside the unit there is no room for a word', () => {
+    const side = (off_m: number | null) => deck_figures(vehicle({ cross_track_m: off_m }))[1]?.side;
+    expect(side(0.034)?.arrow).toBe('◂');
+    expect(side(-0.25)?.arrow).toBe('▸');
+    expect(side(0)).toBeNull();
+    expect(side(null)).toBeNull();
   });
 
   test('tell the speed in the unit that was chosen', () => {

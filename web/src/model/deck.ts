@@ -10,10 +10,9 @@ export interface DeckFigure {
   readonly label: string;
   /** The number alone. */
   readonly value: string;
-  /** And the side, of a distance from the path. */
   readonly unit: string;
-  /** Where there is no room for "cm left": the unit alone, and to which side. */
-  readonly brief: { readonly unit: string; readonly side: '' | '◂' | '▸' };
+  /** Of a distance from the path: a word of some languages has no room beside the unit. */
+  readonly side: { readonly word: string; readonly arrow: '◂' | '▸' } | null;
   readonly tone: 'plain' | 'warn' | 'bad';
 }
 
@@ -26,17 +25,16 @@ const split = (text: string): readonly [value: string, unit: string] => {
   return [value, unit.join(' ')];
 };
 
-const side_of = (left_m: number | null): string =>
-  left_m === null || left_m === 0 ? '' : ` ${side_word(left_m)}`;
-
-const arrow_of = (left_m: number | null): DeckFigure['brief']['side'] =>
-  left_m === null || left_m === 0 ? '' : left_m > 0 ? '◂' : '▸';
+const side_of = (left_m: number | null): DeckFigure['side'] =>
+  left_m === null || left_m === 0
+    ? null
+    : { word: side_word(left_m), arrow: left_m > 0 ? '◂' : '▸' };
 
 const figure = (label: string, [value, unit]: readonly [string, string]): DeckFigure => ({
   label,
   value,
   unit,
-  brief: { unit, side: '' },
+  side: null,
   tone: 'plain',
 });
 
@@ -72,8 +70,8 @@ export const deck_figures = (
     {
       label: say('off_path'),
       value: off,
-      unit: `${off_unit}${side_of(off_m)}`,
-      brief: { unit: off_unit, side: arrow_of(off_m) },
+      unit: off_unit,
+      side: side_of(off_m),
       tone: mission ? path_tone(mission) : 'plain',
     },
     figure(say('to_drive'), split(metres(ended ? null : mission?.distance_left_m))),
