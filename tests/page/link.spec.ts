@@ -123,6 +123,9 @@ test('after a second without data everything live is grey with its age, and come
     page.getByRole('region', { name: 'Mission' }),
   ];
   for (const part of live) await expect(part).toHaveAttribute('data-stale', 'false');
+  // Whoever reaches for one just then still hits it.
+  const stop_mission = page.getByRole('button', { name: 'Stop mission', exact: true });
+  const place = await stop_mission.boundingBox();
 
   const begun = performance.now();
   link.stall('down');
@@ -135,6 +138,16 @@ test('after a second without data everything live is grey with its age, and come
   await expect(page.getByRole('region', { name: 'Mission' })).toContainText(/\d s old/);
   await expect(page.getByLabel('Now')).toContainText(/\d s old/);
   await expect(page.getByText('what you see is old')).toBeVisible();
+  expect(await stop_mission.boundingBox()).toEqual(place);
+  // No age lies on the name of a figure.
+  const covered = await page.locator('section.deck dt').evaluateAll((names) =>
+    names.filter((name) => {
+      const label = name.getBoundingClientRect();
+      const age = document.querySelector('section.deck .age')?.getBoundingClientRect();
+      return !age || (age.left < label.right && age.right > label.left && age.top < label.bottom);
+    }),
+  );
+  expect(covered).toEqual([]);
 
   link.go_on();
   for (const part of live) {
