@@ -1,7 +1,7 @@
 import { describe, expect, test } from 'vitest';
 
 import { heat_of } from '../src/model/heat';
-import { plots_of } from '../src/model/run_plot';
+import { mark_strength, plots_of, shown_range } from '../src/model/run_plot';
 import {
   event_place,
   index_at,
@@ -179,5 +179,28 @@ describe('several runs in one picture', () => {
     expect(cells.length).toBeLessThanOrEqual(20_000);
     expect(cells[0]?.off_m).toBeNull();
     expect(heat_of([track([])]).cells).toEqual([]);
+  });
+});
+
+describe('the axis of a plot', () => {
+  test('is no taller than a metre per second of a robot that stood', () => {
+    expect(shown_range(0, 0)).toEqual([0, 1]);
+    expect(shown_range(null, null)).toEqual([0, 1]);
+    expect(shown_range(-0.1, 0.1)).toEqual([-0.512, 0.512]);
+  });
+
+  test('holds what is plotted, and begins at nought where it is never below', () => {
+    expect(shown_range(0, 100)).toEqual([0, 106]);
+    expect(shown_range(-10, 10)).toEqual([-11.2, 11.2]);
+    const [least, most] = shown_range(40, 40.2);
+    expect(least).toBeGreaterThan(39);
+    expect(most).toBeLessThan(41);
+  });
+
+  test('keeps its curve in sight below many events', () => {
+    expect(mark_strength(1)).toBe(1);
+    expect(mark_strength(30)).toBe(1);
+    expect(mark_strength(292)).toBeLessThan(0.2);
+    expect(mark_strength(292)).toBeGreaterThan(0.1);
   });
 });
