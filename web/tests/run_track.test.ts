@@ -184,9 +184,9 @@ describe('several runs in one picture', () => {
 
 describe('the axis of a plot', () => {
   test('is no taller than a metre per second of a robot that stood', () => {
-    expect(shown_range(0, 0)).toEqual([0, 1]);
-    expect(shown_range(null, null)).toEqual([0, 1]);
-    expect(shown_range(-0.1, 0.1)).toEqual([-0.512, 0.512]);
+    expect(shown_range(0, 0)).toEqual([0, 0.5]);
+    expect(shown_range(null, null)).toEqual([0, 0.5]);
+    expect(shown_range(-0.1, 0.1)).toEqual([-0.5, 0.5]);
   });
 
   test('holds what is plotted, and begins at nought where it is never below', () => {

@@ -2,6 +2,7 @@ import View from 'ol/View';
 import { describe, expect, test } from 'vitest';
 
 import { from_plane } from '../src/map/projection';
+import { fit_beside } from '../src/map/fit_beside';
 import { fit_in, free_part, pixel_of } from '../src/map/sight';
 import type { LatLon } from '../src/model/plan';
 
@@ -18,6 +19,9 @@ const view_of = (): View => {
   view.setViewportSize([...SIZE]);
   return view;
 };
+const fit = (view: View, points: readonly LatLon[], over: readonly (typeof STOP)[]): void => {
+  fit_beside(view, fit_in(view, points, free, 21), free, over);
+};
 const at = (right_m: number, up_m: number): LatLon => from_plane([right_m, up_m]);
 const in_it = ([x, y]: readonly [number, number], box: typeof STOP): boolean =>
   x > box.left && x < box.right && y > box.top && y < box.bottom;
@@ -27,7 +31,7 @@ describe('what is fitted into the map', () => {
 
   test('lies as large as it can where nothing stands over it', () => {
     const view = view_of();
-    fit_in(view, across, free, [], 21);
+    fit(view, across, []);
     const [first, last] = across.map((each) => pixel_of(view, each, free));
     expect(last?.[0]).toBeCloseTo(912, 0);
     expect((last?.[0] ?? 0) - (first?.[0] ?? 0)).toBeCloseTo(640 - 48 - 88, 0);
@@ -41,11 +45,11 @@ describe('what is fitted into the map', () => {
     const view = view_of();
     // High enough to reach into both corners.
     const points = [at(0, 66), at(70, 0)];
-    fit_in(view, points, free, [], 21);
+    fit(view, points, []);
     const before = points.map((each) => pixel_of(view, each, free));
     expect(over.every((box) => before.some((pixel) => in_it(pixel, box)))).toBe(true);
 
-    fit_in(view, points, free, over, 21);
+    fit(view, points, over);
     for (const pixel of points.map((each) => pixel_of(view, each, free))) {
       expect(over.some((box) => in_it(pixel, box))).toBe(false);
       expect(pixel[0]).toBeGreaterThan(360 + 40);
@@ -58,8 +62,8 @@ describe('what is fitted into the map', () => {
   test('stays as it is where what stands over the map covers no place of it', () => {
     const points = [at(0, 0), at(70, 60)]; // from the lower left to the upper right
     const [plain, beside] = [view_of(), view_of()];
-    fit_in(plain, points, free, [], 21);
-    fit_in(beside, points, free, [STOP, CAMERA], 21);
+    fit(plain, points, []);
+    fit(beside, points, [STOP, CAMERA]);
     expect(beside.getResolution()).toBe(plain.getResolution());
     expect(beside.getCenter()).toEqual(plain.getCenter());
   });
@@ -67,9 +71,9 @@ describe('what is fitted into the map', () => {
   test('lies beneath it rather than nowhere', () => {
     const view = view_of();
     const all = { left: 0, top: 0, right: 1000, bottom: 800 };
-    fit_in(view, across, free, [all], 21);
+    fit(view, across, [all]);
     const plain = view_of();
-    fit_in(plain, across, free, [], 21);
+    fit(plain, across, []);
     expect(view.getResolution()).toBe(plain.getResolution());
   });
 });

@@ -40,7 +40,6 @@ import { keep_view } from './last_view';
 import { lazily } from './lazily';
 import { make_ol_map } from './ol_map';
 import { on_palette_change, style_legend } from './palette';
-import { over_map } from './over_map';
 import { prepare_beside } from './pick_painter';
 import { watch_pointer } from './pointer';
 import { from_plane, to_plane } from './projection';
@@ -288,8 +287,8 @@ export class FieldMap implements MapCalls {
     if (points.length === 0) return;
     this.#placed = true;
     const free = free_part(this.#map.getSize() ?? [0, 0], this.#scene.cover);
-    const max_zoom = closely ? CLOSE_ZOOM : WORK_ZOOM + 1;
-    fit_in(this.#view, points, free, over_map(this.#target), max_zoom);
+    const fitted = fit_in(this.#view, points, free, closely ? CLOSE_ZOOM : WORK_ZOOM + 1);
+    void import('./fit_beside').then((it) => it.keep_clear(this.#view, fitted, free, this.#target));
   }
 
   center_robot(): void {

@@ -4,7 +4,6 @@ import type View from 'ol/View';
 
 import { turned } from '../model/map_up';
 import type { LatLon } from '../model/plan';
-import type { Box } from './canvas';
 import type { Cover } from './grid';
 import { to_plane } from './projection';
 
@@ -70,68 +69,32 @@ export const push_view = (view: View, right_px: number, down_px: number): void =
   view.setCenter([center_x - right * resolution, center_y + down * resolution]);
 };
 
-/** Half of a waypoint's sign. */
-const CLEAR_PX = 24;
+export type Padding = readonly [top: number, right: number, bottom: number, left: number];
 
-type Padding = readonly [top: number, right: number, bottom: number, left: number];
+/** What was fitted, to be fitted anew. */
+export interface Fitted {
+  readonly fit: (padding: Padding) => void;
+  /** Where its places are now. */
+  readonly pixels: () => (readonly [x: number, y: number])[];
+  readonly padding: Padding;
+}
 
-/** The four ways to stay out of one. */
-const beside = ([top, right, bottom, left]: Padding, box: Box, free: FreePart): Padding[] => [
-  [Math.max(top, box.bottom + CLEAR_PX - free.top), right, bottom, left],
-  [top, Math.max(right, free.left + free.width - box.left + CLEAR_PX), bottom, left],
-  [top, right, Math.max(bottom, free.top + free.height - box.top + CLEAR_PX), left],
-  [top, right, bottom, Math.max(left, box.right + CLEAR_PX - free.left)],
-];
-
-/**
- * All of them are seen, none of them beneath the buttons; in the middle where there is room for that.
- * @param over what else stands over the map, pixels of it: beneath that a place cannot be tapped
- */
+/** All of them are seen, none of them beneath the buttons; in the middle where there is room for that. */
 export const fit_in = (
   view: View,
   points: readonly LatLon[],
   free: FreePart,
-  over: readonly Box[],
   max_zoom: number,
-): void => {
-  const extent = extent_of(points);
-  const fit = (padding: Padding): void => {
-    view.fit(extent, { padding: [...padding], maxZoom: max_zoom });
-  };
-  const covers = (box: Box, [x, y]: readonly [number, number]): boolean =>
-    x > box.left - CLEAR_PX &&
-    x < box.right + CLEAR_PX &&
-    y > box.top - CLEAR_PX &&
-    y < box.bottom + CLEAR_PX;
-  const is_clear = (): boolean => {
-    const pixels = points.map((at) => pixel_of(view, at, free));
-    return !over.some((box) => pixels.some((pixel) => covers(box, pixel)));
-  };
-  const whole: Padding = [FIT_MARGIN_PX, FIT_RIGHT_PX, FIT_MARGIN_PX, FIT_MARGIN_PX];
-  const fit_whole = (): void => {
-    fit(whole);
-    const rightmost = Math.max(...points.map((at) => pixel_of(view, at, free)[0]));
-    const room = free.left + free.width - FIT_RIGHT_PX - rightmost;
-    push_view(view, clamp(room, 0, (FIT_RIGHT_PX - FIT_MARGIN_PX) / 2), 0);
-  };
-  fit_whole();
-  if (is_clear()) return;
-  // As large as it can be, and beside them all.
-  const parts = over.reduce<Padding[]>(
-    (all, box) => all.flatMap((each) => [each, ...beside(each, box, free)]),
-    [whole],
-  );
-  let best: Padding | null = null;
-  let finest = Infinity;
-  for (const part of parts) {
-    const [top, right, bottom, left] = part;
-    if (free.width - left - right < 1 || free.height - top - bottom < 1) continue;
-    fit(part);
-    const resolution = view.getResolution() ?? Infinity;
-    if (resolution < finest && is_clear()) [best, finest] = [part, resolution];
-  }
-  if (best) fit(best);
-  else fit_whole();
+): Fitted => {
+  const padding = [FIT_MARGIN_PX, FIT_RIGHT_PX, FIT_MARGIN_PX, FIT_MARGIN_PX] as const;
+  const fit: Fitted['fit'] = (by) =>
+    view.fit(extent_of(points), { padding: [...by], maxZoom: max_zoom });
+  const pixels: Fitted['pixels'] = () => points.map((at) => pixel_of(view, at, free));
+  fit(padding);
+  const rightmost = Math.max(...pixels().map(([x]) => x));
+  const room = free.left + free.width - FIT_RIGHT_PX - rightmost;
+  push_view(view, clamp(room, 0, (FIT_RIGHT_PX - FIT_MARGIN_PX) / 2), 0);
+  return { fit, pixels, padding };
 };
 
 export const clamp = (value: number, least: number, most: number): number =>

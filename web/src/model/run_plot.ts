@@ -15,24 +15,16 @@ const SPECS: readonly PlotSpec[] = [
   { label: 'power_w', column: 'power_w' },
 ];
 
-/** In the unit of the plot: else one of a robot that stood would reach to 100 m/s. */
-const LEAST_SPAN = 1;
-
-/** What the axis shows of values between two. */
-export const shown_range = (
-  least: number | null,
-  most: number | null,
-): readonly [number, number] => {
-  if (least === null || most === null) return [0, LEAST_SPAN];
-  const lack = Math.max(0, LEAST_SPAN - (most - least)) / 2;
-  const margin = 0.06 * (most - least);
-  // What is never below nought has its axis there.
-  if (least >= 0 && least - lack - margin < 0) return [0, Math.max(most + margin, LEAST_SPAN)];
-  return [least - lack - margin, most + lack + margin];
+/** What the axis shows of values between two, in its unit: else that of a robot that stood would reach to
+ * 100 m/s. */
+export const shown_range = (least: number | null, most: number | null): [number, number] => {
+  const [low, high] = [least ?? 0, most ?? 0];
+  const margin = Math.max(0.06 * (high - low), (1 - high + low) / 2);
+  return [low >= 0 && low < margin ? 0 : low - margin, high + margin];
 };
 
 /** How strongly the lines of events are drawn: many of them would hide the curves. */
-export const mark_strength = (marks: number): number => Math.min(1, Math.max(0.15, 30 / marks));
+export const mark_strength = (marks: number): number => Math.max(0.15, Math.min(1, 30 / marks));
 
 type Values = readonly (number | null)[];
 export interface Plot {
