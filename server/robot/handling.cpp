@@ -11,11 +11,12 @@ void Handling::see(const nav::VehicleLearner::Seen& seen, const ParameterSet& se
     from_ = set.whole().get();
     set_ = set->path();
   }
-  nav::PathParams& next = *held_[0];
-  next = changed ? set_ : *held_[1];
+  nav::PathParams& next = path_.next();
+  next = changed ? set_ : path_.now();
   if (!learner_.handle(set_, next) && !changed) return;
-  path_.adopt(held_[0]);
-  std::swap(held_[0], held_[1]);
+  wall_.next() = nav::by_sight(next, set->wall.gains, set->sight);
+  landmark_.next() = nav::by_sight(next, set->landmarks.gains, set->sight);
+  for (Turns* each : {&path_, &wall_, &landmark_}) each->take();
 }
 
 void Handling::recall(const nav::Learned& known) noexcept {
@@ -55,10 +56,11 @@ void Handling::tell(nav::Learned& known) const noexcept {
 
 base::VehicleLearned Handling::learned() const noexcept {
   base::VehicleLearned out = learner_.learned(set_);
-  out.delay_used_s = path_->track.delay_s;
-  out.braking_used_mps2 = path_->speed.decel_mps2;
-  out.acceleration_used_mps2 = path_->speed.accel_mps2;
-  out.braking_proved = !path_->prove_braking;
+  const nav::PathParams& used = path_.used();
+  out.delay_used_s = used.track.delay_s;
+  out.braking_used_mps2 = used.speed.decel_mps2;
+  out.acceleration_used_mps2 = used.speed.accel_mps2;
+  out.braking_proved = !used.prove_braking;
   return out;
 }
 

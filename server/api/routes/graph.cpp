@@ -128,12 +128,17 @@ Handler import_map(const ContextPtr& context) {
     std::string body = std::move(call->request.body());
     const Effort effort{body.size()};
     context->aside(
-        call, effort, [body = std::move(body)] { return mission::graph_from_text(body); },
+        call, effort,
+        [body = std::move(body), frame = *frame] {
+          auto read = mission::graph_from_text(body);
+          if (!read) return read;
+          if (const auto fine = mission::settle_on_earth(read->graph, frame); !fine) {
+            read = tl::unexpected(fine.error());
+          }
+          return read;
+        },
         [context, call, frame = *frame](auto read) {
           if (!read) return call->respond(problem(read.error()));
-          if (const auto fine = mission::settle_on_earth(read->graph, frame); !fine) {
-            return call->respond(problem(fine.error()));
-          }
           store::RouteMap map;
           map.about.name = mission::clean_name(query_text(*call, "name"), "Node map");
           map.about.frame = frame;

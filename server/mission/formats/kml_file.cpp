@@ -177,7 +177,10 @@ class KmlReader {
       shapes_.push_back({rows_.back(), {}, std::nullopt, false});
       in_polygon_ = true;
     }
-    if (element.name == "Track") builder_.begin(PartKind::Line);
+    if (element.name == "Track") {
+      line_ = true;
+      builder_.begin(PartKind::Line);
+    }
     if (element.name == "Data" || element.name == "SimpleData") word_ = element.attribute("name");
   }
 
@@ -220,7 +223,7 @@ class KmlReader {
 
   /// A line that is meant as a fence is not to be driven, and what has no shape keeps nobody out.
   void ask_for_shape(const std::string& row) {
-    if (!is_kml_fence(words_) || !shapes_.empty()) return;
+    if (!is_kml_fence(words_) || (!shapes_.empty() && !line_)) return;
     take_fence_feature(words_, nlohmann::json::object(), {row, row}, fence_, file_.rows, problems_);
   }
 
@@ -239,6 +242,7 @@ class KmlReader {
     }
     builder_.end_whole(name_);
     shapes_.clear();
+    line_ = false;
     in_polygon_ = false;  // a Placemark inside a Polygon, which no schema allows, ends both
     name_.clear();
     words_ = nlohmann::json::object();
@@ -300,6 +304,7 @@ class KmlReader {
     if (inside == "LinearRing" && in_polygon_) {
       shapes_.back().rings.push_back(text);
     } else if (inside == "LineString" || inside == "LinearRing") {
+      line_ = true;
       builder_.begin(PartKind::Line);
       tuples(text, row, "coordinate", [this](TrackPoint point) {
         builder_.add(std::move(point));
@@ -383,6 +388,7 @@ class KmlReader {
   std::string name_;  ///< of the open Placemark
   std::vector<Shape> shapes_;
   std::string word_;
+  bool line_ = false;  ///< the Placemark has a way
   nlohmann::json words_ = nlohmann::json::object();
   Fence fence_;
   ImportedFile file_;

@@ -373,8 +373,12 @@ bool Estimator::beside_the_map(const base::GnssFix& fix, const GnssQuality& q) n
   // They lead from now on. Nothing jumps: what they differ by is driven out slowly.
   in.refused_since.reset();
   health_.by_map = false;
-  // Every match was wrong by the same: their number made none of them truer.
-  belief_.P(kYaw, kYaw) = std::max(belief_.P(kYaw, kYaw), north_said_rad_ * north_said_rad_);
+  // Every match was wrong by the same: their number made none of them truer. Antennas did.
+  const bool antennas =
+      last_antennas_ && now_ - *last_antennas_ < kPlaceFresh && !health_.heading.refused_since;
+  if (!antennas) {
+    belief_.P(kYaw, kYaw) = std::max(belief_.P(kYaw, kYaw), north_said_rad_ * north_said_rad_);
+  }
   lead_until_.reset();
   drift_ = q.drift;
   if (fix.fix != fused_type_) {

@@ -421,7 +421,8 @@ TEST(Kml, AFenceThatCannotBeIsRefusedByItsLine) {
             "line 3: must be a Point to be a rally point");
   // A line that is called a fence is not driven, and one without a shape is not passed over.
   const std::string line = "<LineString><coordinates>0,0 0.001,0</coordinates></LineString>";
-  for (const std::string& shape : {line, std::string("<name>north</name>")}) {
+  const std::string both = "<MultiGeometry>" + polygon(ring) + line + "</MultiGeometry>";
+  for (const std::string& shape : {line, std::string("<name>north</name>"), both}) {
     EXPECT_EQ(refused({{"fence", "exclusion"}}, shape),
               "line 2: must be a Polygon, or a Point with radius_m, to be a fence");
     EXPECT_EQ(refused({{"rally", "true"}}, shape), "line 2: must be a Point to be a rally point");

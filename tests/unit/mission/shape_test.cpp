@@ -295,8 +295,11 @@ TEST(ShapeOperations, MirroringTwiceAboutTheSameAxisGivesTheStart) {
 TEST(ShapeOperations, AMirrorAboutNorthChangesEastAndWest) {
   Plan plan;
   plan.name = "line";
-  plan.items = {waypoint_at(58.0, 26.0), waypoint_at(58.0, 26.001), TurnBy{-30.0, std::nullopt},
-                Row{.side = RowSide::Left}, Landmarks{.name = "any", .side = Side::Left},
+  plan.items = {waypoint_at(58.0, 26.0),
+                waypoint_at(58.0, 26.001),
+                TurnBy{-30.0, std::nullopt},
+                Row{.side = RowSide::Left},
+                Landmarks{.name = "any", .side = Side::Left},
                 Landmarks{"any", 0.7}};
   const Plan mirrored = done(plan, Mirror{0.0, LatLon{58.0, 26.0}});
   EXPECT_NEAR(at(mirrored, 1).lon, 25.999, 1e-9);

@@ -14,8 +14,8 @@ using mission::AtEnd;
 using mission::Plan;
 
 TEST(Route, NamesEveryItemThatThisRobotCannotDoYet) {
-  const auto r =
-      lay_route(plan({at(1, 1), mission::Landmarks{}, at(2, 2), mission::Landmarks{}}), kFrame, {});
+  const mission::Landmarks upon{.name = "any", .offset_m = 0.0};
+  const auto r = lay_route(plan({at(1, 1), upon, at(2, 2), upon}), kFrame, {});
   ASSERT_FALSE(r);
   ASSERT_EQ(r.error().fields.size(), 2u);
   EXPECT_EQ(r.error().fields[0].pointer, "/items/1");

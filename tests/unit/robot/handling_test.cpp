@@ -57,6 +57,33 @@ TEST(Handling, AParameterThatIsChangedKeepsWhatWasLearned) {
   EXPECT_NEAR(other.path->speed.decel_mps2, 0.368, 1e-9);
 }
 
+TEST(Handling, WallsAndLandmarksAreDrivenByWhatWasLearnedToo) {
+  // Given brakes that are worn, a slow base, and gains of a wall's own
+  Config config;
+  config.wall.gains.offset = 4.0;
+  const ParameterSet set{config};
+  Handling handling{set};
+  nav::Learned known;
+  known.braking_mps2 = nav::LearnedValue{0.4, 0.02};
+  known.delay_s = nav::LearnedValue{0.3, 0.01};
+  handling.recall(known);
+  // When
+  handling.see({}, set);
+  // Then
+  for (const auto& path : {set.marks.wall_path, set.marks.landmark_path}) {
+    EXPECT_NEAR((*path)->speed.decel_mps2, 0.368, 1e-9);
+    EXPECT_NEAR((*path)->track.delay_s, 0.3, 1e-9);
+  }
+  EXPECT_NEAR((*set.marks.wall_path)->track.settle_min_m,
+              0.5 * (*set.marks.landmark_path)->track.settle_min_m, 1e-9);
+  // And again once the parameters are set anew
+  ParameterSet other = set;
+  other.adopt(std::make_shared<const Config>(config));
+  EXPECT_NEAR((*other.marks.wall_path)->speed.decel_mps2, nav::SpeedParams{}.decel_mps2, 1e-9);
+  handling.see({}, other);
+  EXPECT_NEAR((*other.marks.wall_path)->speed.decel_mps2, 0.368, 1e-9);
+}
+
 TEST(Handling, SpeedingUpThatWasLearnedBoundsThePlan) {
   const ParameterSet set{Config{}};
   Handling handling{set};
