@@ -338,7 +338,7 @@ TEST_F(StreamApi, AStickThatWasHeldBeforeMovesNothingAfterArmingAnotherModeOrANe
   ask("PUT", "/vehicle/mode", {{"mode", "MANUAL"}});
   EXPECT_FALSE(push(*client));
   ask("POST", "/vehicle/estop", Json::object());
-  ask("POST", "/vehicle/estop/reset", Json::object());
+  ask("POST", "/vehicle/estop/reset", soon);
   ask("PUT", "/vehicle/mode", {{"mode", "MANUAL"}});
   ask("POST", "/vehicle/arm", soon);
   EXPECT_FALSE(push(*client));
