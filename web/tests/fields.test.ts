@@ -67,6 +67,18 @@ describe('fields', () => {
     expect(with_field(emptied, 'offset_m', -0.8)).toEqual({ ...cones, offset_m: -0.8 });
   });
 
+  test('a first offset of landmarks lies on the side that was chosen', () => {
+    const of = (side: 'left' | 'right'): Item => ({ type: 'landmarks', name: 'cone', side });
+    const typed = (item: Item, offset_m: number): unknown =>
+      field_value(with_field(item, 'offset_m', offset_m), 'offset_m');
+    expect(typed(of('left'), 0.7)).toBe(-0.7);
+    expect(typed(of('right'), 0.7)).toBe(0.7);
+    expect(typed({ type: 'landmarks', name: 'cone' }, 0.7)).toBe(-0.7);
+    // A sign says the side, and so does a number in place of another one.
+    expect(typed(of('right'), -0.7)).toBe(-0.7);
+    expect(typed({ type: 'landmarks', name: 'cone', offset_m: -0.7 }, 0.5)).toBe(0.5);
+  });
+
   test('what says no distance is told by its side', () => {
     expect(item_title({ type: 'wall', side: 'right' })).toBe('Wall on the right');
     expect(item_title({ type: 'wall', side: 'right', distance_m: 0.9 })).toBe(

@@ -263,16 +263,18 @@ const side_of = ({ offset_m, side }: Landmarks): Side => {
   return side ?? 'left';
 };
 
-/** Landmarks have an offset, with its side, or a side alone: never neither. */
+/** Landmarks have an offset, with its side, or a side alone: never neither. A first offset without a
+ * sign lies on the side that was chosen: nobody who types a distance wants the other one. */
 const with_side = (item: Landmarks, key: string, value: unknown): Landmarks => {
   const { offset_m, ...others } = item;
   const rest = Object.fromEntries(
     Object.entries(others).filter(([name]) => name !== 'side'),
   ) as unknown as Landmarks;
   if (key === 'offset_m') {
-    return typeof value === 'number'
-      ? { ...rest, offset_m: value }
-      : { ...rest, side: side_of(item) };
+    const side = side_of(item);
+    if (typeof value !== 'number') return { ...rest, side };
+    const turned_over = typeof offset_m !== 'number' && value > 0 && side === 'left';
+    return { ...rest, offset_m: turned_over ? -value : value };
   }
   const side: Side = value === 'right' ? 'right' : 'left';
   if (typeof offset_m !== 'number') return { ...rest, side };
