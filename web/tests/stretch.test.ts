@@ -111,6 +111,14 @@ describe('properties of several', () => {
     expect(shared_value(mixed, new Set([0, 1]), 'hold_s')).toBeNull();
   });
 
+  test('say the side of landmarks also where an offset says it', () => {
+    const cones = (more: object): Item => ({ type: 'landmarks', name: 'cone', ...more }) as Item;
+    const both = plan(cones({ offset_m: 0.7 }), cones({ side: 'right' }), cones({ side: 'left' }));
+    expect(shared_value(both, new Set([0]), 'side')).toBe('right');
+    expect(shared_value(both, new Set([0, 1]), 'side')).toBe('right');
+    expect(shared_value(both, new Set([0, 2]), 'side')).toBeUndefined();
+  });
+
   test('are set for all of them, and taken out again', () => {
     const slow = set_fields(new Set([0, 1, 2]), 'speed_mps', 0.2)(mixed);
     expect(slow.items[1]).toMatchObject({ speed_mps: 0.2 });

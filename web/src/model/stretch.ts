@@ -2,7 +2,7 @@
 // same properties; a mission cut in two, and two made one.
 
 import type { PlanAction } from './actions';
-import { fields_of, with_field, type Field } from './fields';
+import { field_value, fields_of, with_field, type Field } from './fields';
 import type { Offset } from './geo';
 import { plane_at } from './plane';
 import { place_of, type Item, type Plan, type Waypoint } from './plan';
@@ -174,9 +174,10 @@ export const shared_fields = (plan: Plan, picked: Picked): readonly Field[] => {
 /** What all of them say; undefined: they differ. */
 export const shared_value = (plan: Plan, picked: Picked, key: string): unknown => {
   const values = new Set(
-    [...picked].map(
-      (index) => (plan.items[index] as unknown as Record<string, unknown>)[key] ?? null,
-    ),
+    in_order(picked).flatMap((index) => {
+      const item = plan.items[index];
+      return item ? [field_value(item, key) ?? null] : [];
+    }),
   );
   const [value] = values;
   return values.size === 1 ? value : undefined;
