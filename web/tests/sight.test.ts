@@ -3,7 +3,7 @@ import { describe, expect, test } from 'vitest';
 
 import { from_plane } from '../src/map/projection';
 import { fit_beside } from '../src/map/fit_beside';
-import { fit_in, free_part, pixel_of } from '../src/map/sight';
+import { fit_in, free_part, make_fit, pixel_of } from '../src/map/sight';
 import type { LatLon } from '../src/model/plan';
 
 const SIZE = [1000, 800] as const;
@@ -75,5 +75,71 @@ describe('what is fitted into the map', () => {
     const plain = view_of();
     fit(plain, across, []);
     expect(view.getResolution()).toBe(plain.getResolution());
+  });
+
+  describe('while the code for that is still to come', () => {
+    const beneath = [at(0, 66), at(70, 0)];
+    const late = () => {
+      const view = view_of();
+      let cleared = 0;
+      let come: () => void = () => undefined;
+      let fail: () => void = () => undefined;
+      const code = new Promise<void>((resolve, reject) => ([come, fail] = [resolve, reject]));
+      const fits = make_fit(view, async () => {
+        await code;
+        return {
+          fit_beside,
+          keep_clear: (of, fitted, part) => {
+            cleared += 1;
+            fit_beside(of, fitted, part, [STOP]);
+          },
+        };
+      });
+      const fitted = (points: readonly LatLon[]) =>
+        fits(points, free, 21, undefined as unknown as HTMLElement);
+      return { view, cleared: () => cleared, come: () => come(), fail: () => fail(), fitted };
+    };
+    const hidden = (view: View): boolean =>
+      beneath.some((each) => in_it(pixel_of(view, each, free), STOP));
+
+    test('is moved out from beneath as soon as it comes', async () => {
+      const { view, come, fitted } = late();
+      const done = fitted(beneath);
+      expect(hidden(view)).toBe(true);
+      come();
+      await done;
+      expect(hidden(view)).toBe(false);
+    });
+
+    test.each([
+      ['panned', (view: View) => view.setCenter([500, 500])],
+      ['zoomed', (view: View) => view.setZoom(15)],
+    ])('stays as it is where somebody has %s since', async (_, move) => {
+      const { view, cleared, come, fitted } = late();
+      const done = fitted(beneath);
+      move(view);
+      const [center, resolution] = [view.getCenter(), view.getResolution()];
+      come();
+      await done;
+      expect(cleared()).toBe(0);
+      expect([view.getCenter(), view.getResolution()]).toEqual([center, resolution]);
+    });
+
+    test('counts only if nothing else was fitted since, even in the same place', async () => {
+      const { view, cleared, come, fitted } = late();
+      const both = [fitted([at(0, 0), at(0, 66), at(70, 66)]), fitted(beneath)];
+      come();
+      await Promise.all(both);
+      expect(cleared()).toBe(1);
+      expect(hidden(view)).toBe(false);
+    });
+
+    test('stays as it is where it never comes', async () => {
+      const { view, fail, fitted } = late();
+      const done = fitted(beneath);
+      fail();
+      await expect(done).resolves.toBeUndefined();
+      expect(hidden(view)).toBe(true);
+    });
   });
 });

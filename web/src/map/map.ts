@@ -47,7 +47,7 @@ import { kept, Scene } from './scene';
 import { prepare_heat, prepare_run } from './run_painter';
 import { prepare_space } from './space_painter';
 import { make_scale_bar } from './scale_bar';
-import { clamp, fit_in, FIT_MARGIN_PX, free_part, in_part, pixel_of, push_view } from './sight';
+import { clamp, FIT_MARGIN_PX, free_part, in_part, make_fit, pixel_of, push_view } from './sight';
 
 /** Until something is known: the whole world, in degrees. */
 const WORLD_ZOOM = 2;
@@ -66,6 +66,7 @@ export class FieldMap implements MapCalls {
     maxZoom: MAX_ZOOM,
     constrainRotation: false,
   });
+  readonly #fit = make_fit(this.#view);
   readonly #map: OlMap;
   readonly #ground: GroundBelow;
   readonly #edit: EditInteraction;
@@ -287,8 +288,7 @@ export class FieldMap implements MapCalls {
     if (points.length === 0) return;
     this.#placed = true;
     const free = free_part(this.#map.getSize() ?? [0, 0], this.#scene.cover);
-    const fitted = fit_in(this.#view, points, free, closely ? CLOSE_ZOOM : WORK_ZOOM + 1);
-    void import('./fit_beside').then((it) => it.keep_clear(this.#view, fitted, free, this.#target));
+    void this.#fit(points, free, closely ? CLOSE_ZOOM : WORK_ZOOM + 1, this.#target);
   }
 
   center_robot(): void {

@@ -97,5 +97,30 @@ export const fit_in = (
   return { fit, pixels, padding };
 };
 
+/**
+ * Fits at once, and beside what stands over the map when the code for that has come. Over a weak link
+ * that takes seconds: not if the map was moved since, or something else fitted. Without a link the
+ * places stay where they are.
+ */
+export const make_fit = (view: View, load = () => import('./fit_beside')) => {
+  const seen = () => `${view.getCenter()} ${view.getResolution()}`;
+  let last: Fitted;
+  return (
+    points: readonly LatLon[],
+    free: FreePart,
+    max_zoom: number,
+    target: HTMLElement,
+  ): Promise<void> => {
+    const fitted = (last = fit_in(view, points, free, max_zoom));
+    const before = seen();
+    return load().then(
+      (it) => {
+        if (fitted === last && seen() === before) it.keep_clear(view, fitted, free, target);
+      },
+      () => undefined,
+    );
+  };
+};
+
 export const clamp = (value: number, least: number, most: number): number =>
   Math.min(Math.max(value, least), most);
