@@ -1,7 +1,7 @@
 import { describe, expect, test } from 'vitest';
 
 import { heat_of } from '../src/model/heat';
-import { mark_strength, plots_of, shown_range } from '../src/model/run_plot';
+import { is_stretch, mark_strength, plots_of, shown_range } from '../src/model/run_plot';
 import {
   event_place,
   index_at,
@@ -195,6 +195,16 @@ describe('the axis of a plot', () => {
     const [least, most] = shown_range(40, 40.2);
     expect(least).toBeGreaterThan(39);
     expect(most).toBeLessThan(41);
+  });
+
+  test('shows a stretch if not the whole run is seen', () => {
+    const x = Float64Array.of(0, 1, 2, 3);
+    expect(is_stretch(x, 0, 3)).toBe(false);
+    expect(is_stretch(x, 0, 2.5)).toBe(true);
+    expect(is_stretch(x, 1, 3)).toBe(true);
+    // Of one sample, or of none, there is nothing to draw out.
+    expect(is_stretch([2], 1.8, 2.2)).toBe(false);
+    expect(is_stretch([], 0, 100)).toBe(false);
   });
 
   test('keeps its curve in sight below many events', () => {

@@ -26,6 +26,10 @@ export const shown_range = (least: number | null, most: number | null): [number,
 /** How strongly the lines of events are drawn: many of them would hide the curves. */
 export const mark_strength = (marks: number): number => Math.max(0.15, Math.min(1, 30 / marks));
 
+/** @param x in order @return whether from min to max is a stretch that somebody drew out of it */
+export const is_stretch = (x: ArrayLike<number>, min: number, max: number): boolean =>
+  min > (x[0] ?? min) || max < (x[x.length - 1] ?? max);
+
 type Values = readonly (number | null)[];
 export interface Plot {
   readonly label: string;
