@@ -10,6 +10,7 @@ import {
   type NodeGraph,
   type NodeGraphCalls,
   type NodeGraphWithNodes,
+  why_not_way,
 } from '../model/node_graph';
 import { say } from '../model/say';
 import type { Station } from './station.svelte';
@@ -19,7 +20,8 @@ export class NodeGraphs {
   items = $state.raw<readonly NodeGraph[] | null>(null);
   /** Null: none is looked at. */
   shown = $state.raw<NodeGraphWithNodes | null>(null);
-  busy = $state(false);
+  #under_way = $state(0);
+  busy = $derived(this.#under_way > 0);
   failure = $state<string | null>(null);
   /** Of the one that was just added. */
   notes = $state.raw<readonly GraphNote[]>([]);
@@ -29,6 +31,8 @@ export class NodeGraphs {
 
   readonly #calls: NodeGraphCalls;
   readonly #station: Station;
+  /** How often one was chosen: an answer to an earlier choice comes too late. */
+  #chosen = 0;
 
   constructor(calls: NodeGraphCalls, station: Station) {
     this.#calls = calls;
@@ -46,20 +50,19 @@ export class NodeGraphs {
   async show(id: string | null): Promise<void> {
     this.notes = [];
     this.shown = null;
+    this.#chosen += 1;
     if (id !== null) await this.#read(id);
   }
 
   async add(file: File, map: string): Promise<void> {
-    this.busy = true;
-    const answer = await this.#calls.add(file, map);
-    this.busy = false;
+    const answer = await this.#waited(this.#calls.add(file, map));
     if (!answer.ok) {
       this.failure = refusal_text(answer.refusal);
       return;
     }
     await this.refresh();
-    await this.#read(answer.value.id);
     this.notes = answer.value.notes;
+    await this.#read(answer.value.id);
   }
 
   async forget(graph: NodeGraph): Promise<void> {
@@ -75,21 +78,37 @@ export class NodeGraphs {
     if (!answer.ok) this.failure = refusal_text(answer.refusal);
   }
 
-  /** The way goes behind what is planned already. @param from null: where the robot is */
+  /** The way goes behind what is planned already. If another mission or graph is looked at by the time
+   * that it is known, nobody wants it any more. @param from null: where the robot is */
   async plan(from: number | null, to: number): Promise<void> {
-    if (!this.shown) return;
-    this.busy = true;
-    const answer = await this.#calls.plan({ graph: this.shown.id, from, to });
-    this.busy = false;
-    this.failure = answer.ok ? null : refusal_text(answer.refusal);
-    if (answer.ok) this.#station.editor.do(append_way(answer.value));
+    const { shown } = this;
+    const { editor } = this.#station;
+    const { plan, stored } = editor;
+    if (!shown) return;
+    const answer = await this.#waited(this.#calls.plan({ graph: shown.id, from, to }));
+    // Whoever only stored it has the same mission still.
+    const same = editor.stored?.id === stored?.id || editor.plan === plan;
+    if (this.shown?.id !== shown.id || !same) return;
+    this.failure = answer.ok
+      ? why_not_way(shown, { from, to }, editor.plan)
+      : refusal_text(answer.refusal);
+    if (answer.ok && this.failure === null) editor.do(append_way(answer.value));
   }
 
   async #read(id: string): Promise<void> {
-    this.busy = true;
-    const answer = await this.#calls.read(id);
-    this.busy = false;
+    const choice = (this.#chosen += 1);
+    const answer = await this.#waited(this.#calls.read(id));
+    if (choice !== this.#chosen) return;
     this.failure = answer.ok ? null : refusal_text(answer.refusal);
     if (answer.ok) this.shown = answer.value;
+  }
+
+  async #waited<T>(answer: Promise<T>): Promise<T> {
+    this.#under_way += 1;
+    try {
+      return await answer;
+    } finally {
+      this.#under_way -= 1;
+    }
   }
 }
