@@ -274,6 +274,8 @@ TagPlace on_body(const Tag& tag, const base::Mount& mount, const TagParams& para
   TagPlace out;
   out.id = tag.id;
   out.pose = {place.x(), place.y(), std::atan2(into.y(), into.x())};
+  out.up_m = place.z();
+  out.into_up = into.z();
   Matrix6 both = Matrix6::Zero();
   both.topLeftCorner<3, 3>() = both.bottomRightCorner<3, 3>() = turn;
   const Matrix6 cov = both * tag.covariance * both.transpose();

@@ -4,6 +4,7 @@
 //   image ─Finder─▶ TagsSeen ─stamp─▶ X_OB then ─▶ TagTrack of that id
 //   tick ─▶ moved() ───────────────────▲
 //
+// Each is taken as hanging in the level plan, however the body leaned then (level()).
 // Of an image that shows an id twice that id is left out: nobody knows which of the two is meant.
 // One more than kMost takes the place of the one not seen for longest. Control thread; allocates
 // only when a tag is seen for the first time.

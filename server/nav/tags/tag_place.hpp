@@ -1,5 +1,6 @@
 #pragma once
-// What one image tells of a tag, on the ground plan of the body.
+// What one image tells of a tag, on the ground plan of the body. Where the body leans, a tag that
+// hangs at the height h seems h · sin(lean) nearer or farther in that plan: level() takes it out.
 
 #include <string>
 #include <vector>
@@ -18,7 +19,12 @@ struct TagPlace {
   double sigma_across_m = 0.0;
   double sigma_yaw_rad = 0.0;
   bool yaw_known = false;  ///< its doubt is small enough
+  double up_m = 0.0;       ///< its middle over the origin, along the body's own upward axis
+  double into_up = 0.0;    ///< upward part of the unit vector that its yaw is the direction of
 };
+
+/// On the level plan under the body that lies so: ahead is where the body points, seen from above.
+TagPlace level(const TagPlace& seen, const sense::Lie3& lie) noexcept;
 
 /// All that one image showed. Immutable once told.
 struct TagsSeen {

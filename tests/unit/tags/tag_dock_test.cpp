@@ -249,6 +249,40 @@ TEST(TagBook, AnImageFromBeforeWhatIsRememberedIsCountedAndLeftOut) {
   EXPECT_EQ(book.find(7)->camera, "front");
 }
 
+//   ramp of 5 degrees: the tag hangs upright 0.8 m before the body's origin, 0.6 m over it
+TEST(TagBook, OnASlopeATagIsAsFarAsItIsInTheLevelPlan) {
+  const double lean = base::rad_from_deg(5.0);
+  struct Case {
+    sense::Lie3 lie;
+    TagPlace seen;
+  };
+  TagPlace nose_up;
+  nose_up.pose = {0.8 * std::cos(lean) + 0.6 * std::sin(lean), 0.0, 0.0};
+  nose_up.up_m = 0.6 * std::cos(lean) - 0.8 * std::sin(lean);
+  nose_up.into_up = -std::sin(lean);
+  TagPlace
+      right_down;  // the origin's left is raised: what is above it lies to the left of its axis
+  right_down.pose = {0.8, 0.6 * std::sin(lean), 0.0};
+  right_down.up_m = 0.6 * std::cos(lean);
+  for (const auto& [lie, seen] :
+       {Case{{0.0, 0.0, lean, true}, nose_up}, Case{{0.0, lean, 0.0, true}, right_down}}) {
+    TagBook book;
+    sense::Odometry state;
+    state.stamp = base::Time{std::chrono::hours(1)};
+    state.lie = lie;
+    ASSERT_TRUE(book.moved(state));
+    TagPlace place = seen;
+    place.id = 7;
+    place.yaw_known = true;
+    place.sigma_range_m = place.sigma_across_m = place.sigma_yaw_rad = 0.01;
+    ASSERT_EQ(book.take({"front", state.stamp, {place}}), 1U);
+    const Pose2 told = book.find(7)->track.pose().value();
+    EXPECT_NEAR(told.x_m, 0.8, 1e-9);
+    EXPECT_NEAR(told.y_m, 0.0, 1e-9);
+    EXPECT_NEAR(told.yaw_rad, 0.0, 1e-9);
+  }
+}
+
 TEST(TagBook, MoreTagsThanItKeepsTakeThePlaceOfTheOldest) {
   TagBook book;
   base::Time now{std::chrono::hours(1)};
