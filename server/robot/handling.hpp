@@ -2,9 +2,8 @@
 // What the tracker is told of the vehicle: what was set, and what was learned in its place.
 //
 //   parameters ──▶ ┌──────────┐
-//   seen, sent ──▶ │ learner  │ ──▶ config.path, and what walls and landmarks make of it: what
-//   every
-//                  └──────────┘     tracker reads at its next step
+//   seen, sent ──▶ │ learner  │ ──▶ config.path, and of it the paths of walls and landmarks
+//                  └──────────┘     (config.marks): what every tracker reads at its next step
 //
 // Ways that are laid out before they are driven keep to the parameters: only how they are driven
 // follows what was learned. Two values that change places: nothing is allocated. Control thread.

@@ -99,6 +99,16 @@ class Hall(SeeingRobot):
         check(worst < 0.12, f"the estimate was {worst:.3f} m off the truth")
         check(all(p["source"] == "map+odometry" for *_, p in told), "by the map")
 
+    def ends_at_the_last_point(self):
+        """It stands at 9.5, 0 of the map, and points along -y; the map's x axis points east from the world's
+        origin."""
+        truth = self.truth()
+        east, north = (truth["lon"] - START[1]) / METRE_LON, (truth["lat"] - START[0]) / METRE_LAT
+        print(f"# it ended at {east:.2f} east, {north:.2f} north of the map's origin, {truth['heading_deg']:.0f} deg")
+        check(math.hypot(east - 9.5, north) < 0.35, f"it ended at {east:.2f}, {north:.2f}")
+        check(abs((truth["heading_deg"] - 180 + 180) % 360 - 180) < 6, f"it points to {truth['heading_deg']:.0f} deg")
+        check(truth["contacts"] == 0, f"it touched something: {truth}")
+
     def watch(self, seconds, done, fault=None):
         """Until it is done. @return all that off() told, with its time"""
         told, end = [], time.monotonic() + seconds
@@ -143,13 +153,7 @@ def drives_in_the_metres_of_the_map():
         check(status == 409 and "barn" in said["detail"], f"another map's: {status} {said}")
         hall.start(mission)
         hall.watch(150, lambda: hall.rest.get("/execution")["state"] == "finished")
-        truth = hall.truth()
-        # The map's x axis points east from the world's origin.
-        east, north = (truth["lon"] - START[1]) / METRE_LON, (truth["lat"] - START[0]) / METRE_LAT
-        print(f"# it ended at {east:.2f} east, {north:.2f} north of the map's origin, {truth['heading_deg']:.0f} deg")
-        check(math.hypot(east - 9.5, north) < 0.35, f"it ended at {east:.2f}, {north:.2f}")
-        check(abs((truth["heading_deg"] - 180 + 180) % 360 - 180) < 6, f"it points to {truth['heading_deg']:.0f} deg")
-        check(truth["contacts"] == 0, f"it touched something: {truth}")
+        hall.ends_at_the_last_point()
 
 
 class BareHall(Hall):
@@ -215,13 +219,7 @@ def drives_along_a_route_graph_in_the_map():
         check(way["nodes"] == [1, 2, 3, 4], f"along the links: {way['nodes']}")
         hall.start(way["mission"])
         hall.watch(150, lambda: hall.rest.get("/execution")["state"] == "finished")
-        truth = hall.truth()
-        # The walls' metres are the map's.
-        east, north = (truth["lon"] - START[1]) / METRE_LON, (truth["lat"] - START[0]) / METRE_LAT
-        print(f"# it ended at {east:.2f} east, {north:.2f} north of the map's origin, {truth['heading_deg']:.0f} deg")
-        check(math.hypot(east - 9.5, north) < 0.35, f"it ended at {east:.2f}, {north:.2f}")
-        check(abs((truth["heading_deg"] - 180 + 180) % 360 - 180) < 6, f"it points to {truth['heading_deg']:.0f} deg")
-        check(truth["contacts"] == 0, f"it touched something: {truth}")
+        hall.ends_at_the_last_point()
 
 
 def satellites_come_back_without_a_jump():

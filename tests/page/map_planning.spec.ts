@@ -1,5 +1,7 @@
 // A mission planned in a map of the list while the robot is in none: at home, before the first drive there.
 
+import type { Page } from '@playwright/test';
+
 import {
   draw,
   items,
@@ -50,15 +52,19 @@ const files = () => {
   ];
 };
 
-test('points are tapped in a map of the list, dragged, and saved, with the robot in no map', async ({
-  page,
-  station,
-}) => {
-  await open_page(page, station.url);
+const open_with_the_shed = async (page: Page, url: string): Promise<void> => {
+  await open_page(page, url);
   await tab(page, 'Missions');
   await press(page, 'Maps');
   await page.getByLabel('Map files').setInputFiles(files());
   await expect(page.getByText('The map “shed” is stored.')).toBeVisible();
+};
+
+test('points are tapped in a map of the list, dragged, and saved, with the robot in no map', async ({
+  page,
+  station,
+}) => {
+  await open_with_the_shed(page, station.url);
 
   // when the mission counts from it, it is seen though it is not in use and lies nowhere
   await tab(page, 'Plan');
@@ -107,11 +113,7 @@ test('points are tapped in a map of the list, dragged, and saved, with the robot
 });
 
 test('a map that is laid and not in use is shown from the list', async ({ page, station }) => {
-  await open_page(page, station.url);
-  await tab(page, 'Missions');
-  await press(page, 'Maps');
-  await page.getByLabel('Map files').setInputFiles(files());
-  await expect(page.getByText('The map “shed” is stored.')).toBeVisible();
+  await open_with_the_shed(page, station.url);
   const [{ id = 0 } = {}] = (await station.rest<{ items: { id: number }[] }>('GET', '/maps')).items;
   const { lat, lon } = station.sim.now;
   const anchor = { lat, lon, heading_deg: 90, accuracy_m: 0.3, heading_accuracy_deg: 1 };
@@ -131,11 +133,7 @@ test('a route graph lies on the map that is planned in, and a way through it is 
   page,
   station,
 }) => {
-  await open_page(page, station.url);
-  await tab(page, 'Missions');
-  await press(page, 'Maps');
-  await page.getByLabel('Map files').setInputFiles(files());
-  await expect(page.getByText('The map “shed” is stored.')).toBeVisible();
+  await open_with_the_shed(page, station.url);
   await tab(page, 'Plan');
   await press(page, 'Route graph');
   const card = page.getByRole('region', { name: 'Route graph' });

@@ -1,11 +1,23 @@
 // The same with a finger, on a phone.
 
+import type { Page } from '@playwright/test';
+
 import { arm, items, map_middle, open_page, press, tab } from './page';
 import { expect, test } from './station';
 
 test.use({ viewport: { width: 390, height: 844 }, hasTouch: true, deviceScaleFactor: 2 });
 
 type Finger = readonly [x: number, y: number];
+
+/** Several fingers at once, as no method of Playwright moves them. */
+const fingers_on = async (page: Page) => {
+  const session = await page.context().newCDPSession(page);
+  return (type: 'touchStart' | 'touchMove' | 'touchEnd', ...fingers: Finger[]): Promise<unknown> =>
+    session.send('Input.dispatchTouchEvent', {
+      type,
+      touchPoints: fingers.map(([fx, fy], id) => ({ x: fx, y: fy, id })),
+    });
+};
 
 test('a tap adds a point, a finger moves it, two fingers only zoom', async ({ page, station }) => {
   await open_page(page, station.url);
@@ -21,15 +33,7 @@ test('a tap adds a point, a finger moves it, two fingers only zoom', async ({ pa
   const places = (): Promise<string[]> => items(page).allInnerTexts();
   const drawn = await places();
 
-  const session = await page.context().newCDPSession(page);
-  const touch = (
-    type: 'touchStart' | 'touchMove' | 'touchEnd',
-    ...fingers: Finger[]
-  ): Promise<unknown> =>
-    session.send('Input.dispatchTouchEvent', {
-      type,
-      touchPoints: fingers.map(([fx, fy], id) => ({ x: fx, y: fy, id })),
-    });
+  const touch = await fingers_on(page);
 
   await touch('touchStart', [x - 120, y - 60]);
   for (let k = 1; k <= 6; k += 1) await touch('touchMove', [x - 120, y - 60 + k * 15]);
@@ -64,15 +68,7 @@ test('a pad that went under the thumb drives again by a fresh push, and by nothi
   await press(page, 'MANUAL');
   const pad = page.getByLabel(/^Drive pad/);
   const speed = (): number => Math.abs(station.sim.now.speed_mps);
-  const session = await page.context().newCDPSession(page);
-  const touch = (
-    type: 'touchStart' | 'touchMove' | 'touchEnd',
-    ...fingers: Finger[]
-  ): Promise<unknown> =>
-    session.send('Input.dispatchTouchEvent', {
-      type,
-      touchPoints: fingers.map(([fx, fy], id) => ({ x: fx, y: fy, id })),
-    });
+  const touch = await fingers_on(page);
   const push = async (): Promise<Finger> => {
     await pad.scrollIntoViewIfNeeded();
     const box = await pad.boundingBox();

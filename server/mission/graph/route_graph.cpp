@@ -130,11 +130,9 @@ std::optional<std::int64_t> nearest_node(const RouteGraph& graph, const MapFrame
     return std::nullopt;
   }
   const EnuPoint here = base::TangentPlane(*frame.origin).to_local(at);
-  const double yaw = base::yaw_from_heading(frame.heading_deg);
-  const double c = std::cos(yaw);
-  const double s = std::sin(yaw);
-  return nearest_node(graph, here.east_m * c + here.north_m * s,
-                      here.north_m * c - here.east_m * s);
+  return nearest_of(graph, kFar, [&](const MapNode& node) {
+    return base::distance_m(here, enu_of(node, frame.heading_deg));
+  });
 }
 
 std::optional<std::int64_t> nearest_node(const RouteGraph& graph, double x_m, double y_m) {
