@@ -253,11 +253,15 @@ void KnownPlaces::judge(Known& known, const Seen& seen, nav::Estimator& estimato
   known.beside = 0;
   if (estimator.needs_no_landmark()) return put(known, PlaceVerdict::Agrees);
   const bool used_anew = !known.used_at || base::seconds(now - *known.used_at) > kAnew_s;
+  const nav::StateVector before = estimator.belief().x;
   if (!estimator.correct(sight, now)) return;
   if (used_anew) {
-    known.before_m = look->sigma_m;
-    known.first = look->off;
+    known.before_m = look->belief_m;
+    known.moved = {};
   }
+  const nav::StateVector& after = estimator.belief().x;
+  known.moved.east_m += after(nav::kEast) - before(nav::kEast);
+  known.moved.north_m += after(nav::kNorth) - before(nav::kNorth);
   known.used_at = now;
   known.used_way_m = way_m_;
   put(known, PlaceVerdict::Used);
@@ -303,11 +307,14 @@ KnownPlaces::Known* KnownPlaces::ally(const Known& known, base::Time now) noexce
 }
 
 /// Was the estimate, before it was corrected by `last`, so sure that this one is the wrong one? By
-/// the likelihoods of what it would have been off by then.
+/// the likelihoods of what it would have been off by then. A single look from afar may be half a
+/// metre off; where `last` took it in many of them is not.
 bool KnownPlaces::outvoted(const Known& known, const Known& last) noexcept {
   const auto square = [](base::EnuPoint p) { return p.east_m * p.east_m + p.north_m * p.north_m; };
-  const double more = square(last.first + known.look.off) - square(last.first);
-  return more > kOdds * last.before_m * last.before_m;
+  const double by_last = std::max(last.before_m * last.before_m, 1e-4);
+  const double look = known.look.sigma_m * known.look.sigma_m;
+  const double by_this = by_last + std::max(look - known.look.belief_m * known.look.belief_m, 0.0);
+  return square(last.moved + known.look.off) / by_this - square(last.moved) / by_last > kOdds;
 }
 
 /// Who speaks against it.

@@ -72,8 +72,8 @@ class KnownPlaces {
     std::optional<base::Time> seen_at{};
     std::optional<base::Time> used_at{};
     double used_way_m = 0.0;    ///< way_m_ then
-    double before_m = 0.0;      ///< 1 sigma of the look at which it was used first this time
-    base::EnuPoint first{};     ///< what that one said
+    double before_m = 0.0;      ///< 1 sigma of the estimate when it was used first this time
+    base::EnuPoint moved{};     ///< so far it took the estimate since then
     nav::LandmarkLook look{};   ///< the last one
     double distrusted_m = 0.0;  ///< off by so much then; 0: it is trusted
     bool alone = false;         ///< distrusted alone

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Past tags and poles whose place is known, without satellites: roverd-sim draws what the camera sees and speaks the
 scanner's bytes, its tracks slip and count too much. Judged by where the simulator says the robot was: the estimate
-stays near the truth and claims what it knows; a tag that was entered a metre wrong is told, and not followed."""
+stays near the truth and claims what it knows; a tag that was entered wrong by far is told, and not followed."""
 
 import math
 import pathlib
@@ -56,6 +56,8 @@ accuracy_m = 0.03
 """
 # The robot drives north along east = 0. Name to what it is, where it stands, and by how much it was entered wrong.
 DOOR, POLE, GATE, WRONG = (1.3, 8.0), (-1.6, 15.0), (1.3, 22.0), (1.3, 29.0)
+# Seven metres after the gate the odometry is 0.35 m uncertain: a metre would be one word against another at times.
+ENTERED_OFF_M = 1.5
 END_M = 30.0
 PORCH = (0.3, 2.8)  # before the robot at its start
 
@@ -85,6 +87,7 @@ class Lane(SeeingRobot):
     def prepare(self):
         self.control.ask({"pose": {"east_m": 0.0, "north_m": 0.0, "heading_deg": 0.0}, "forget": True,
                           "fault": {"gnss_outage": True}})
+        time.sleep(0.5)  # what the receiver measured before is on its way for 0.12 s
 
     def known(self, name):
         return next(p for p in self.rest.get("/known-places")["items"] if p["name"] == name)
@@ -110,7 +113,7 @@ def past_four_of_them():
     with Lane() as lane:
         lane.enter("pole", POLE)
         lane.enter("gate", GATE, 0.0, 4)
-        lane.enter("wrong", WRONG, 1.0, 5)
+        lane.enter("wrong", WRONG, ENTERED_OFF_M, 5)
         check(lane.known("door")["configured"], "the configuration's own")
         truth = lane.truth()
         until("it has a map", 20, lambda: lane.rest.call(
@@ -138,7 +141,7 @@ def past_four_of_them():
         print(f"# of {len(told)}: {worst_m:.3f} m off at most, {ratio:.1f} claimed sigmas", flush=True)
         check(worst_m < 0.6 and ratio < 3.5, f"{worst_m} m, {ratio} sigmas")
         wrong = lane.known("wrong")
-        check(wrong["state"] == "contradicts" and abs(wrong["off_m"] - 1.0) < 0.4, f"told: {wrong}")
+        check(wrong["state"] == "contradicts" and abs(wrong["off_m"] - ENTERED_OFF_M) < 0.4, f"told: {wrong}")
         events = [e["detail"] for e in lane.rest.get("/events?limit=1000")["items"] if e["kind"] == "known_place"]
         check(len(events) == 1 and "wrong is seen" in events[0], f"what was told: {events}")
         check(lane.truth()["contacts"] == 0, f"it touched something: {lane.truth()}")

@@ -5,6 +5,7 @@ itself in it by a lidar of sixteen rows; judged by where the simulator says it w
 import math
 import struct
 import sys
+import time
 
 from place_test import HALF, MAP, METRE_LAT, METRE_LON, START, WALLS, Hall
 from seeing import HEARS_TOP_AND_FRONT, TOP_AND_FRONT, SeeingRobot
@@ -55,6 +56,7 @@ class SolidHall(Hall):
     def prepare(self):
         draw_cloud(self.scratch)
         self.control.ask({"fault": {"gnss_outage": True}})
+        time.sleep(0.5)  # what the receiver measured before is on its way for 0.12 s
 
     def sticks(self, ahead, turn):
         """Somebody drives it by the radio, past roverd. @param ahead, turn of the sticks, -1 to 1"""

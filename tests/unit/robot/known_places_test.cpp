@@ -67,6 +67,7 @@ class Passing {
   double fastest_mps = 0.0;      ///< the estimate beside the odometry, over a second
   double worst_sigmas = 0.0;     ///< the error, in claimed sigmas
   double odometry_scale = 1.03;  ///< of the frame in which a scan keeps its posts
+  double range_sigma = 0.003;    ///< of a tag's range, for each m^2 of it
 
   /// A person says where it stands.
   void placed() {
@@ -124,7 +125,7 @@ class Passing {
         nav::tags::TagPlace tag;
         tag.id = *t.tag;
         tag.pose = {b.x, b.y, base::angle_diff_rad(d.yaw_rad, base::kPi / 2.0)};
-        tag.sigma_range_m = 0.003 * range_m * range_m;
+        tag.sigma_range_m = range_sigma * range_m * range_m;
         tag.sigma_across_m = 0.001 * range_m;
         tag.sigma_yaw_rad = 0.03;
         tag.yaw_known = range_m < 2.5;
@@ -249,6 +250,20 @@ TEST(KnownPlaces, OneThatWasEnteredAMetreWrongIsToldAndNotFollowed) {
   EXPECT_NE(p.news[0].words.find("gate is seen"), std::string::npos) << p.news[0].words;
   EXPECT_NE(p.news[0].words.find("by pole, used"), std::string::npos) << p.news[0].words;
   EXPECT_LT(p.farthest_m, 0.9) << "the odometry's own error since the pole";
+  EXPECT_LT(p.worst_sigmas, 3.0);
+}
+
+TEST(KnownPlaces, OneThatIsWrongIsToldAloneThoughTheOneBeforeItWasSeenFromAfarFirst) {
+  // From 5 m a tag's range is 0.75 m uncertain; from beside it, it is not.
+  Passing p({tag("door", 3, {0.8, 7.0}), tag("gate", 4, {0.8, 14.0}),
+             tag("wrong", 5, {0.8, 21.0}, {0.0, 1.5})});
+  p.d.slip = 0.99;
+  p.range_sigma = 0.03;
+  p.placed();
+  p.d.speed_mps = 0.8;
+  p.run(30.0);
+  EXPECT_EQ(p.verdict("gate"), PlaceVerdict::Used);
+  EXPECT_EQ(p.verdict("wrong"), PlaceVerdict::Contradicts) << p.state("wrong").detail;
   EXPECT_LT(p.worst_sigmas, 3.0);
 }
 
