@@ -102,6 +102,14 @@ struct MissionPlace {
   friend bool operator==(const MissionPlace&, const MissionPlace&) = default;
 };
 
+/// What an item by sight is driven by right now.
+struct Lead {
+  std::string_view what;         ///< row wall landmarks tag
+  bool scan = false;             ///< scanners tell it
+  bool vision = false;           ///< cameras do. Neither: it is looked for, or remembered
+  std::string_view by = "auto";  ///< whose word it is to be driven by: auto scan vision
+};
+
 struct MissionProgress {
   std::string mission_id;
   std::int64_t revision = 0;
@@ -119,6 +127,7 @@ struct MissionProgress {
   std::optional<double> distance_left_m;
   std::optional<double> eta_s;
   std::optional<MissionPlace> place;  ///< running, paused or blocked
+  std::optional<Lead> lead{};         ///< an item by sight is driven
   bool waits_for_word = false;        ///< it stays at a place until somebody says to go on
   bool laid_by_old = false;           ///< its way was laid out by parameters that changed since
 };

@@ -88,6 +88,8 @@ struct Row {
   Until until{};
   friend bool operator==(const Row&, const Row&) = default;
 };
+/// By whose word a wall or landmarks are driven along: all that see them, scanners, or cameras.
+enum class SightSource { Auto, Scan, Vision };
 /// Along a wall, around its corners and past its doors.
 struct Wall {
   Side side = Side::Left;              ///< of the vehicle, where the wall is
@@ -95,6 +97,8 @@ struct Wall {
   std::optional<double> speed_mps{};   ///< empty: as the profile says for walls
   std::optional<double> length_m{};    ///< done after so much way; empty: at the wall's end
   Until until{};
+  std::optional<SightSource> source{};  ///< empty: as the profile says
+  bool landmarks_first = false;         ///< those that stand along it are driven past first
   friend bool operator==(const Wall&, const Wall&) = default;
 };
 /// Past landmarks, one after the other, all on the same side.
@@ -106,6 +110,7 @@ struct Landmarks {
   std::optional<int> count{};         ///< done behind so many; empty or 0: behind the last one
   /// Instead of offset_m: of the vehicle, where they are; so far from them as the profile says.
   std::optional<Side> side{};
+  std::optional<SightSource> source{};  ///< empty: as the profile says
   friend bool operator==(const Landmarks&, const Landmarks&) = default;
 };
 inline constexpr std::string_view kAnyLandmark = "any";

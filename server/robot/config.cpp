@@ -151,6 +151,7 @@ base::Result<void> check(const Config& c) {
   if (auto good = check_by_sight(c); !good) return good;
   if (auto good = in_section("radio", check(c.radio)); !good) return good;
   if (auto good = in_section("nav.tool", check(c.tool)); !good) return good;
+  if (auto good = in_section("nav.wall", check(c.wall)); !good) return good;
   if (auto good = in_section("nav.landmarks", check(c.landmarks)); !good) return good;
   if (auto good = in_section("nav.rows", nav::rows::check(c.rows)); !good) return good;
   if (auto good = in_section("nav.tag_dock", nav::tags::check(c.tag_dock)); !good) return good;

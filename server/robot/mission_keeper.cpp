@@ -134,6 +134,7 @@ base::MissionProgress MissionKeeper::progress(const std::optional<base::Pose>& p
   p.cross_track_limit_m = at.cross_track_limit_m;
   p.distance_left_m = at.distance_left_m;
   p.eta_s = at.eta_s;
+  p.lead = at.lead;
   p.place =
       executor.place(pose && pose->heading_known ? std::optional(pose->yaw_rad) : std::nullopt);
   const bool known = pose && pose->horizontal_sigma_m <= kKnown_m;

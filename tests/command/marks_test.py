@@ -179,6 +179,46 @@ def cones_by_camera():
     check(camera["state"] == "up", f"what is malformed is refused, and it stays up: {camera}")
 
 
+def cones_first():
+    """along a wall by scanner and camera, past the cone that stands in the way first: who leads is told"""
+    cone = [-0.15, 1.0]
+    led = []
+
+    def look(yard):
+        lead = yard.rest.get("/execution")["lead"]
+        if lead and lead["source"] and (not led or led[-1] != lead["what"]):
+            led.append(lead["what"])
+    things = [{"kind": "wall", "points": [[-1.0, -7], [-1.0, 12]]},
+              {"kind": "cone", "at": cone, "radius_m": 0.15, "height_m": 0.5}]
+    with Yard(things, SCANNER) as yard:
+        yard.sees("front")
+        over = yard.drive({"type": "wall", "side": "left", "distance_m": 0.9, "length_m": 11, "source": "scan",
+                           "landmarks_first": True}, 120, lambda truth: look(yard))
+        check(over["state"] == "finished", f"it goes to the end: {over}")
+        check(led == ["wall", "landmarks", "wall"], f"led by {led}")
+        at_m = yard.nearest_m(cone)
+        off_m = yard.truth()["east_m"] - (-1.0 + HALF_WALL_M + 0.9)
+        print(f"# past the cone at {at_m:.3f} m, off its line along the wall by {100 * off_m:.1f} cm at the end",
+              flush=True)
+        check(abs(at_m - 0.7) <= 0.06 and abs(off_m) <= 0.06, "at its distance from each")
+        check(yard.truth()["contacts"] == 0, f"it touched something: {yard.truth()}")
+
+
+def other_source():
+    """the camera alone counts, as the parameter says, and is silent: it stands, though the scanner sees the wall"""
+    with Yard([{"kind": "wall", "points": [[-1.0, -7], [-1.0, 12]]}], SCANNER) as yard:
+        yard.sees("front")
+        status, _, refusal = yard.rest.call("PUT", "/parameters/nav.wall.source", {"value": "eyes"})
+        check(status in (400, 422) and "source must be auto, scan or vision" in str(refusal), f"{status} {refusal}")
+        yard.rest.do("PUT", "/parameters/nav.wall.source", {"value": "vision"})
+        over = yard.drive({"type": "wall", "side": "left", "distance_m": 0.9, "length_m": 5}, 60)
+        check(over["state"] == "blocked" and "no wall is seen on the left" in over["reason"], f"{over}")
+        yard.rest.do("PUT", "/parameters/nav.wall.source", {"value": "auto"})
+        yard.trail.clear()
+        over = yard.drive({"type": "wall", "side": "left", "distance_m": 0.9, "length_m": 3}, 60)
+        check(over["state"] == "finished", f"by whoever sees it: {over}")
+
+
 def no_cone():
     """where none is seen the robot stops within some metres, and says why"""
     with Yard([], SCANNER) as yard:
@@ -191,4 +231,5 @@ def no_cone():
 
 if __name__ == "__main__":
     chosen = [globals()[name] for name in sys.argv[1:]]
-    sys.exit(run_cases(chosen or [along_a_wall, farther_off, black_wall, cones_by_scanner, cones_by_camera, no_cone]))
+    sys.exit(run_cases(chosen or [along_a_wall, farther_off, black_wall, cones_by_scanner, cones_by_camera, cones_first,
+                                  other_source, no_cone]))

@@ -204,6 +204,17 @@ Json rc_json(const base::Snapshot& s, base::Time now) {
   return out;
 }
 
+Json lead_json(const std::optional<base::Lead>& lead) {
+  if (!lead) return nullptr;
+  const char* source = lead->scan && lead->vision ? "both"
+                       : lead->scan               ? "scan"
+                       : lead->vision             ? "vision"
+                                                  : nullptr;
+  return {{"what", lead->what},
+          {"source", source != nullptr ? Json(source) : Json(nullptr)},
+          {"by", lead->by}};
+}
+
 /// @param id_word "id" in the vehicle's state, "mission_id" under /execution.
 Json progress_json(const base::MissionProgress& p, const char* id_word) {
   const bool none = p.mission_id.empty();
@@ -212,6 +223,7 @@ Json progress_json(const base::MissionProgress& p, const char* id_word) {
           {"name", none ? Json(nullptr) : Json(p.name)},
           {"state", base::to_string(p.state)},
           {"reason", p.reason},
+          {"lead", lead_json(p.lead)},
           {"waits_for_word", p.waits_for_word},
           {"current_item", p.current_item ? Json(*p.current_item) : Json(nullptr)},
           {"items", p.items},

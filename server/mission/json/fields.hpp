@@ -76,6 +76,9 @@ inline constexpr std::array kWordsOf<RowSide>{RowSide::Both, RowSide::Left, RowS
 template <>
 inline constexpr std::array kWordsOf<RowSeeing>{RowSeeing::Line, RowSeeing::Rays};
 template <>
+inline constexpr std::array kWordsOf<SightSource>{SightSource::Auto, SightSource::Scan,
+                                                  SightSource::Vision};
+template <>
 inline constexpr std::array kWordsOf<AtEnd>{AtEnd::Hold, AtEnd::Return, AtEnd::Repeat,
                                             AtEnd::BackAndForth};
 
@@ -155,6 +158,8 @@ void fields(V& v, Of<Wall> auto& p) {
   v.number("distance_m", p.distance_m, kBeside_m);
   v.number("speed_mps", p.speed_mps, kSpeed_mps);
   v.number("length_m", p.length_m, kRow_m);
+  v.word("source", p.source);
+  v.flag("landmarks_first", p.landmarks_first);
   until_fields(v, p.until);
 }
 template <class V>
@@ -165,6 +170,7 @@ void fields(V& v, Of<Landmarks> auto& p) {
   v.exactly_one("offset_m", p.offset_m.has_value(), "side", p.side.has_value());
   v.number("speed_mps", p.speed_mps, kSpeed_mps);
   v.count("count", p.count, kMaxLandmarks);
+  v.word("source", p.source);
 }
 template <class V>
 void fields(V& v, Of<Dock> auto& p) {

@@ -63,6 +63,7 @@ std::string_view to_string(Turn turn) noexcept;         // auto pivot arc throug
 std::string_view to_string(Side side) noexcept;         // left right
 std::string_view to_string(RowSide side) noexcept;      // both left right
 std::string_view to_string(RowSeeing seeing) noexcept;  // line rays
+std::string_view to_string(SightSource by) noexcept;    // auto scan vision
 std::string_view to_string(AtEnd at_end) noexcept;      // hold return repeat back_and_forth
 
 }  // namespace roverd::mission

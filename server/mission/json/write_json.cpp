@@ -246,6 +246,18 @@ std::string_view to_string(RowSeeing seeing) noexcept {
   return "line";
 }
 
+std::string_view to_string(SightSource by) noexcept {
+  switch (by) {
+    case SightSource::Auto:
+      return "auto";
+    case SightSource::Scan:
+      return "scan";
+    case SightSource::Vision:
+      return "vision";
+  }
+  return "auto";
+}
+
 std::string_view to_string(AtEnd at_end) noexcept {
   switch (at_end) {
     case AtEnd::Hold:

@@ -61,7 +61,7 @@ Executor::Executor(base::Setting<PathParams> path, base::Setting<BehaveParams> b
       modes_(std::move(modes)),
       tracker_(path),
       row_(path, std::move(rows)),
-      wall_(marks.wall_path.value_or(path), marks),
+      wall_(marks.wall_path.value_or(path), marks.landmark_path.value_or(path), marks),
       landmarks_(marks.landmark_path.value_or(path), marks),
       dock_(path, params_, marks.tag_dock) {
   notices_.reserve(16);

@@ -22,6 +22,7 @@
 #include "base/result.hpp"
 #include "base/setting.hpp"
 #include "base/snapshot.hpp"
+#include "nav/behave/along_wall.hpp"
 #include "nav/behave/join.hpp"
 #include "nav/behave/landmark_drive.hpp"
 #include "nav/behave/mode_params.hpp"
@@ -30,7 +31,6 @@
 #include "nav/behave/route.hpp"
 #include "nav/behave/row_drive.hpp"
 #include "nav/behave/tag_dock.hpp"
-#include "nav/behave/wall_drive.hpp"
 #include "nav/track/tracker.hpp"
 
 namespace roverd::nav {
@@ -69,6 +69,7 @@ struct Progress {
   /// To the end of the mission; of this lap where it repeats for ever. Jumps are not counted.
   std::optional<double> distance_left_m;
   std::optional<double> eta_s;  ///< until then, as the speeds are planned
+  std::optional<base::Lead> lead{};
 };
 
 /// The way in hand ahead of its place, for whoever looks for a way around what stands on it.
@@ -291,6 +292,7 @@ class Executor {
   std::optional<Left> left(const RouteStep& step, std::optional<EnuPoint> here) const noexcept;
   void tell_item_end(Progress& p, std::optional<EnuPoint> here) const noexcept;
   Left laps_left() const noexcept;
+  std::optional<base::Lead> lead() const noexcept;
 
   base::Setting<PathParams> path_params_;
   base::Setting<BehaveParams> params_;
@@ -305,7 +307,7 @@ class Executor {
   RotateInPlace rotation_;
   RowDrive row_;
   std::optional<RowSight> row_sight_;
-  WallDrive wall_;
+  AlongWall wall_;
   LandmarkDrive landmarks_;
   tags::TagDock dock_;
   std::optional<MarkSight> mark_sight_;

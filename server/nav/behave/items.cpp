@@ -196,7 +196,8 @@ TrackOutput Executor::step_row(const Vehicle& vehicle, double limit_mps, double 
 /// Likewise along a wall.
 bool Executor::enter_wall(const RouteStep& step) {
   const WallToDrive& wall = *step.wall;
-  wall_.begin({wall.side, wall.distance_m, wall.speed_mps, wall.length_m, left_});
+  wall_.begin({{wall.side, wall.distance_m, wall.speed_mps, wall.length_m, wall.by, left_},
+               wall.landmarks_first});
   left_ = 0.0;
   standing_.reset();
   drove_ = true;
@@ -214,10 +215,10 @@ TrackOutput Executor::step_wall(const Vehicle& vehicle, double limit_mps, double
     if (beside) wall_.end_beside({beside->x_m, beside->y_m});
   }
   const TrackOutput out = wall_.step(*mark_sight_, vehicle, limit_mps, dt_s);
-  if (wall_.state() == WallDrive::State::Failed) {
+  if (wall_.state() == AlongWall::State::Failed) {
     std::string why = wall_.reason();
     block("item " + std::to_string(step_now()->item) + ": " + why);
-  } else if (wall_.state() == WallDrive::State::Done) {
+  } else if (wall_.state() == AlongWall::State::Done) {
     doing_ = Doing::Nothing;
     reached(*step_now());
   }
@@ -233,6 +234,7 @@ bool Executor::enter_landmarks(const RouteStep& step) {
   order.name = pass.name;
   order.speed_mps = pass.speed_mps;
   order.count = pass.count;
+  order.by = pass.by;
   order.passed = static_cast<int>(std::clamp(left_, 0.0, kMostPassed));
   left_ = 0.0;
   standing_.reset();

@@ -40,6 +40,7 @@ void LandmarkDrive::reset() noexcept {
   reason_.clear();
   order_ = {};
   laid_.reset();
+  told_by_ = {};
   begun_ = again_ = ahead_ = false;
   unseen_s_ = stood_s_ = 0.0;
 }
@@ -79,13 +80,22 @@ double LandmarkDrive::offset_m() const noexcept {
   return order_.offset_m.value_or(params_.landmarks->offset_m);
 }
 
+marks::By LandmarkDrive::by() const noexcept {
+  return order_.by.value_or(marks::by_from(params_.landmarks->source).value_or(marks::By::Auto));
+}
+
+ToldBy LandmarkDrive::told_by() const noexcept {
+  return state_ == State::Driving && laid_ ? told_by_ : ToldBy{};
+}
+
 /// Lays the way past what is known. @return false: nobody looks, or there is nothing to drive to.
 bool LandmarkDrive::look(const MarkSight& sight) {
   const auto told = [&] {
     if (sight.view == nullptr) return false;
     // Behind so many nobody has to say that no more follow.
-    const marks::Eyes eyes = enough() ? 0 : course_.eyes(sight.view->landmarks);
-    return sight.fresh(*params_.sight, eyes);
+    if (enough()) return sight.fresh(*params_.sight);
+    const marks::Eyes eyes = course_.eyes(sight.view->landmarks_by(by()));
+    return eyes != 0 ? sight.fresh(*params_.sight, eyes) : sight.fresh(*params_.sight, by());
   };
   const auto nobody_looks = [&] {
     laid_.reset();
@@ -101,13 +111,16 @@ bool LandmarkDrive::look(const MarkSight& sight) {
   const auto lay = [&](std::span<const marks::Landmark> known) {
     return course_.lay(known, sight.body, order_.side, order_.name, speed_mps, params);
   };
-  auto way = lay(enough() ? std::span<const marks::Landmark>() : sight.view->landmarks);
+  const auto known = sight.view->landmarks_by(by());
+  auto way = lay(enough() ? std::span<const marks::Landmark>() : known);
   if (enough()) way = lay({});
   if (const auto near_m = course_.too_near_m()) {
     fail("stands too near to a landmark (" + tenths_text(*near_m) + ")");
     return false;
   }
   ahead_ = course_.ahead();
+  const marks::Eyes eyes = course_.eyes(known);
+  told_by_ = {(eyes & sight.view->eyes[0]) != 0, (eyes & sight.view->eyes[1]) != 0};
   if (!told()) return nobody_looks();
   if (!ahead_ && course_.passed() == 0) return false;
   // Where one that was driven to is gone, the way may end behind the robot already.

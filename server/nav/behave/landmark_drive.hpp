@@ -35,8 +35,9 @@ class LandmarkDrive {
     std::optional<double> offset_m{};
     std::string name{};  ///< only those that are called so; empty: all
     std::optional<double> speed_mps{};
-    std::optional<int> count{};  ///< done behind so many; empty: behind the last that is seen
-    int passed = 0;              ///< of an item that was interrupted: so many are done already
+    std::optional<int> count{};     ///< done behind so many; empty: behind the last that is seen
+    std::optional<marks::By> by{};  ///< by whose word; empty: the parameter, at each look
+    int passed = 0;                 ///< of an item that was interrupted: so many are done already
   };
   void begin(Order order) noexcept;
   void reset() noexcept;
@@ -50,12 +51,15 @@ class LandmarkDrive {
   const std::string& reason() const noexcept { return reason_; }  ///< why Failed
   /// With those of before an interruption.
   int passed() const noexcept { return order_.passed + course_.passed(); }
+  double offset_m() const noexcept;
+  marks::By by() const noexcept;
+  /// Who tells the one that is ahead, or told the last one.
+  ToldBy told_by() const noexcept;
   /// Positive: the vehicle is left of the way.
   double cross_track_m() const noexcept { return drive_.cross_track_m(); }
   TrackPhase phase() const noexcept;
 
  private:
-  double offset_m() const noexcept;
   bool look(const MarkSight& sight);
   void seek(const marks::Pose2& body);
   void judge(double dt_s);
@@ -75,8 +79,9 @@ class LandmarkDrive {
   bool again_ = false;              ///< it goes on from elsewhere
   bool ahead_ = false;              ///< one is still to be passed
   std::optional<base::Time> laid_;  ///< by the view of this time
-  double unseen_s_ = 0.0;           ///< there is none to drive to, or nobody looks
-  double stood_s_ = 0.0;            ///< at the end of what is laid
+  ToldBy told_by_;
+  double unseen_s_ = 0.0;  ///< there is none to drive to, or nobody looks
+  double stood_s_ = 0.0;   ///< at the end of what is laid
 };
 
 }  // namespace roverd::nav

@@ -11,6 +11,13 @@ constexpr double kSeenSigma_rad = 0.02;
 
 }  // namespace
 
+std::optional<marks::By> by_of(std::optional<mission::SightSource> source) noexcept {
+  if (!source) return std::nullopt;
+  return *source == mission::SightSource::Scan     ? marks::By::Scan
+         : *source == mission::SightSource::Vision ? marks::By::Vision
+                                                   : marks::By::Auto;
+}
+
 Vehicle by_odometry(const marks::Pose2& body, const Vehicle& vehicle) noexcept {
   Vehicle v = vehicle;
   v.at = {body.x_m, body.y_m};

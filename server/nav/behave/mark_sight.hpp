@@ -6,6 +6,7 @@
 
 #include "base/params.hpp"
 #include "base/setting.hpp"
+#include "mission/plan.hpp"
 #include "nav/marks/params.hpp"
 #include "nav/marks/view.hpp"
 #include "nav/marks/ways.hpp"
@@ -76,6 +77,19 @@ struct MarkSight {
   bool fresh(const SightParams& params, marks::Eyes eyes = 0) const noexcept {
     return view != nullptr && view->looked_since(now - base::from_seconds(params.old_s), eyes);
   }
+  /// Somebody whose word counts has looked lately.
+  bool fresh(const SightParams& params, marks::By by) const noexcept {
+    return view != nullptr && view->told(by) && fresh(params, view->eyes_by(by));
+  }
+};
+
+/// Empty: as the parameters say.
+std::optional<marks::By> by_of(std::optional<mission::SightSource> source) noexcept;
+
+/// Whose word it is that an item by sight is driven by right now.
+struct ToldBy {
+  bool scan = false;
+  bool vision = false;
 };
 
 /// The vehicle in O: its place and direction by the odometry, which is sure of what is seen by it.

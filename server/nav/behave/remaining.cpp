@@ -119,6 +119,26 @@ void Executor::tell_item_end(Progress& p, std::optional<EnuPoint> here) const no
   if (to_next_m) p.way_to_item_end_m = std::max(0.0, *to_next_m + rest_m);
 }
 
+std::optional<base::Lead> Executor::lead() const noexcept {
+  if (!running()) return std::nullopt;
+  const auto told = [](std::string_view what, ToldBy by, marks::By asked) {
+    return base::Lead{what, by.scan, by.vision, marks::to_string(asked)};
+  };
+  const base::Time now = mark_sight_ ? mark_sight_->now : base::Time{};
+  switch (doing_) {
+    case Doing::Row:
+      return base::Lead{.what = "row", .scan = row_.state() == RowDrive::State::Driving};
+    case Doing::Wall:
+      return told(wall_.passes() ? "landmarks" : "wall", wall_.told_by(now), wall_.by());
+    case Doing::Landmarks:
+      return told("landmarks", landmarks_.told_by(), landmarks_.by());
+    case Doing::Dock:
+      return base::Lead{.what = "tag", .vision = dock_.state() != tags::TagDock::State::Search};
+    default:
+      return std::nullopt;
+  }
+}
+
 Progress Executor::progress(std::optional<EnuPoint> here, double sigma_m) const {
   Progress p;
   const RouteStep* step = step_now();
@@ -149,6 +169,7 @@ Progress Executor::progress(std::optional<EnuPoint> here, double sigma_m) const 
   beside(Doing::Row, row_);
   beside(Doing::Wall, wall_);
   beside(Doing::Landmarks, landmarks_);
+  p.lead = lead();
   if (const auto lap = left(*step, here)) {
     const Left more = laps_left();
     const bool waits = doing_ == Doing::Wait || (stays_ && !step->endless);

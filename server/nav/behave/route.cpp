@@ -223,11 +223,12 @@ class Layout {
                     " from its wall: this vehicle would touch it");
     }
     not_back_and_forth("a wall");
-    WallToDrive wall;
-    wall.side = w.side == mission::Side::Left ? marks::Side::Left : marks::Side::Right;
-    wall.distance_m = w.distance_m;
-    wall.speed_mps = w.speed_mps;
-    wall.length_m = w.length_m;
+    WallToDrive wall{w.side == mission::Side::Left ? marks::Side::Left : marks::Side::Right,
+                     w.distance_m,
+                     w.speed_mps,
+                     w.length_m,
+                     by_of(w.source),
+                     w.landmarks_first};
     if (!until(w.until, wall.until)) return;
     leave_circle();
     forth().steps.push_back({.kind = StepKind::Wall, .item = item_, .wall = wall});
@@ -246,6 +247,7 @@ class Layout {
     pass.name = l.name == mission::kAnyLandmark ? "" : l.name;
     pass.speed_mps = l.speed_mps;
     if (l.count.value_or(0) > 0) pass.count = l.count;
+    pass.by = by_of(l.source);
     leave_circle();
     forth().steps.push_back({.kind = StepKind::Landmarks, .item = item_, .landmarks = pass});
   }

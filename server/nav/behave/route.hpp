@@ -46,6 +46,8 @@ struct WallToDrive {
   std::optional<double> distance_m{};  ///< empty: the default of walls
   std::optional<double> speed_mps;     ///< empty: the default of what is driven by sight
   std::optional<double> length_m;      ///< empty: to its end
+  std::optional<marks::By> by{};       ///< by whose word; empty: as the parameters say
+  bool landmarks_first = false;        ///< those that stand along it are driven past first
   std::optional<EnuPoint> until{};     ///< at the latest beside this place
 };
 
@@ -56,6 +58,7 @@ struct LandmarksToPass {
   std::string name;                      ///< empty: all
   std::optional<double> speed_mps;       ///< empty: the default of what is driven by sight
   std::optional<int> count;              ///< empty: to the last one that is seen
+  std::optional<marks::By> by{};         ///< by whose word; empty: as the parameters say
 };
 
 /// A tag to stand before.

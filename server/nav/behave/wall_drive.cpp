@@ -84,6 +84,7 @@ void WallDrive::reset() noexcept {
   until_.reset();
   last_.reset();
   laid_.reset();
+  scanned_at_ = imaged_at_ = {};
   driven_m_ = unseen_s_ = stood_s_ = 0.0;
   to_length_ = false;
 }
@@ -142,9 +143,19 @@ double WallDrive::distance_m() const noexcept {
   return order_.distance_m.value_or(params_.walls->distance_m);
 }
 
+marks::By WallDrive::by() const noexcept {
+  return order_.by.value_or(marks::by_from(params_.walls->source).value_or(marks::By::Auto));
+}
+
+ToldBy WallDrive::told_by(base::Time now) const noexcept {
+  if (state_ != State::Driving || !laid_) return {};
+  const base::Time since = now - base::from_seconds(params_.sight->old_s);
+  return {scanned_at_ >= since, imaged_at_ >= since};
+}
+
 /// Lays the way along what is known. @return false: nobody looks, or there is no wall.
 bool WallDrive::look(const MarkSight& sight) {
-  if (!sight.fresh(*params_.sight)) {
+  if (!sight.fresh(*params_.sight, by())) {
     laid_.reset();
     return false;
   }
@@ -152,9 +163,11 @@ bool WallDrive::look(const MarkSight& sight) {
   laid_ = sight.view->stamp;
   const double speed_mps =
       std::min(order_.speed_mps.value_or(params_.sight->speed_mps), path_params_->speed.max_mps);
-  auto way = marks::wall_way(sight.view->walls, sight.body, order_.side, distance_m(), speed_mps,
-                             sight.now, *params_.walls);
+  auto way = marks::wall_way(sight.view->walls_by(by()), sight.body, order_.side, distance_m(),
+                             speed_mps, sight.now, *params_.walls);
   if (!way) return false;
+  scanned_at_ = way->scanned_at;
+  imaged_at_ = way->imaged_at;
   bool to_length = false;
   if (order_.length_m) {
     to_length = cut(*way, way->here_m + std::max(0.0, *order_.length_m - driven_m_));

@@ -31,6 +31,7 @@ class WallDrive {
     std::optional<double> distance_m{};  ///< empty: the parameter, as it is at each look
     std::optional<double> speed_mps{};
     std::optional<double> length_m{};  ///< done after so much way; empty: at its end
+    std::optional<marks::By> by{};     ///< by whose word; empty: the parameter, at each look
     double driven_m = 0.0;             ///< of an item that was interrupted: so much is done already
   };
   void begin(const Order& order) noexcept;
@@ -46,12 +47,16 @@ class WallDrive {
   State state() const noexcept { return state_; }
   const std::string& reason() const noexcept { return reason_; }  ///< why Failed
   double driven_m() const noexcept { return driven_m_; }
+  /// Somebody else drives it along the wall for a while, which counts.
+  void count(const marks::Pose2& body) noexcept;
+  marks::By by() const noexcept;
+  /// Who tells the wall beside it, right now. Nobody: it is looked for, or remembered.
+  ToldBy told_by(base::Time now) const noexcept;
   /// Positive: the vehicle is left of the way.
   double cross_track_m() const noexcept { return drive_.cross_track_m(); }
   TrackPhase phase() const noexcept;
 
  private:
-  void count(const marks::Pose2& body) noexcept;
   double distance_m() const noexcept;
   bool look(const MarkSight& sight);
   void seek(const marks::Pose2& body);
@@ -69,6 +74,8 @@ class WallDrive {
   std::optional<EnuPoint> until_;     ///< in O
   std::optional<marks::Pose2> last_;  ///< X_OB of the last step
   std::optional<base::Time> laid_;    ///< by the view of this time
+  base::Time scanned_at_{};           ///< a scan told the wall beside it last
+  base::Time imaged_at_{};            ///< a vision program did
   double driven_m_ = 0.0;
   double unseen_s_ = 0.0;   ///< no wall on that side, or nobody looks
   double stood_s_ = 0.0;    ///< at the end of what is laid

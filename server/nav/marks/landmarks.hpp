@@ -72,6 +72,8 @@ class Landmarks {
   }
 
   std::vector<Landmark> all() const;
+  /// Those that are not known yet are counted from here on.
+  void number_from(std::uint32_t first) noexcept { next_ = first; }
 
  private:
   struct Seen {

@@ -5,6 +5,8 @@
 #include <string>
 
 #include "base/params.hpp"
+#include "base/result.hpp"
+#include "nav/marks/source.hpp"
 
 namespace roverd::nav::marks {
 
@@ -36,6 +38,7 @@ struct WallParams {
   double door_m = 1.5;
   double min_plane_size = 4000.0;
   double distance_m = 0.9;
+  std::string source = "auto";
   SteerGains gains;
   double way_m = 4.0;
   double corner_m = 0.15;
@@ -54,6 +57,8 @@ void fields(V& v, WallParams& p) {
   v("min_plane_size", p.min_plane_size, 0.0, 1e6, "a camera's smaller planes are no wall");
   v("distance_m", p.distance_m, 0.1, 20.0,
     "from the wall to the vehicle's middle, where the item does not say it");
+  v("source", p.source,
+    "auto, scan or vision: by whose word a wall is driven along, where the item does not say it");
   fields(v, p.gains);
   v("way_m", p.way_m, 1.0, 10.0, "the way along the wall is laid so far ahead");
   v("corner_m", p.corner_m, 0.02, 1.0, "how far an inner corner may be cut");
@@ -69,6 +74,7 @@ struct LandmarkParams {
   double confirm = 3.0;
   double forget_s = 1.0;
   double offset_m = 0.7;
+  std::string source = "auto";
   SteerGains gains;
   double corner_m = 0.03;
   double on_m = 1.0;
@@ -85,13 +91,28 @@ void fields(V& v, LandmarkParams& p) {
   v("forget_s", p.forget_s, 0.2, 60.0, "in view and not seen for so long it is gone");
   v("offset_m", p.offset_m, 0.1, 20.0,
     "from a landmark to the vehicle's middle, where the item does not say it");
+  v("source", p.source,
+    "auto, scan or vision: by whose word they are passed, where the item does not say it");
   fields(v, p.gains);
   v("corner_m", p.corner_m, 0.01, 0.2,
     "how far the bend may be cut where the way to the next one turns off");
   v("on_m", p.on_m, 0.2, 5.0, "behind the last one it drives on so far, and stops");
 }
 
+/// "auto", "scan" or "vision".
+inline base::Result<void> check_source(const std::string& source) {
+  if (by_from(source)) return {};
+  return base::fail(base::Code::Invalid,
+                    "source must be auto, scan or vision, is \"" + source + "\"",
+                    {{"source", "must be auto, scan or vision"}});
+}
+
+inline base::Result<void> check(const WallParams& p) {
+  return check_source(p.source);
+}
+
 inline base::Result<void> check(const LandmarkParams& p) {
+  if (auto good = check_source(p.source); !good) return good;
   if (!(p.min_radius_m < p.max_radius_m)) {
     return base::fail(base::Code::Invalid, "min_radius_m must be smaller than max_radius_m",
                       {{"min_radius_m", "must be smaller than max_radius_m"}});

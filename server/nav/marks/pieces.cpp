@@ -20,7 +20,9 @@ Piece piece_of(const Wall& w, const Stretch& s) {
           s.from_open,
           s.to_open,
           w.ends_at(s.from_m, false),
-          w.ends_at(s.to_m, true)};
+          w.ends_at(s.to_m, true),
+          w.scanned_at,
+          w.imaged_at};
 }
 
 }  // namespace

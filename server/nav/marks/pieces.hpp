@@ -19,6 +19,8 @@ struct Piece {
   bool b_open = false;
   bool a_ends = false;  ///< something told that the wall ends there
   bool b_ends = false;
+  base::Time scanned_at{};  ///< a scan told its wall last
+  base::Time imaged_at{};   ///< a vision program did
 };
 
 /// Of those that are believed.

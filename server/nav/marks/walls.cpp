@@ -116,10 +116,6 @@ void refit(Wall& wall, const Moments& m) noexcept {
 
 }  // namespace
 
-std::string_view to_string(Source s) noexcept {
-  return s == Source::Scan ? "scan" : "vision";
-}
-
 std::optional<PlaneWall> wall_of(const base::Vision& vision, const base::Mount& mount,
                                  const WallParams& params) noexcept {
   const base::VisionPlane* best = nullptr;
@@ -219,6 +215,7 @@ void Walls::put(const Line& line, Source source, base::Time stamp, const WallPar
   best->rms_m = std::max(best->rms_m, line.rms_m);
   best->wall.source = source;
   best->wall.seen_at = stamp;
+  (source == Source::Scan ? best->wall.scanned_at : best->wall.imaged_at) = stamp;
   if (!best->matched) ++best->wall.hits;
   best->wall.believed = best->wall.believed || best->wall.hits >= kBelieved;
   best->matched = source == Source::Scan;
@@ -284,6 +281,8 @@ void Walls::merge(const WallParams& params) {
       a.wall.hits = std::max(a.wall.hits, b.wall.hits);
       a.wall.believed = a.wall.believed || b.wall.believed;
       a.wall.seen_at = std::max(a.wall.seen_at, b.wall.seen_at);
+      a.wall.scanned_at = std::max(a.wall.scanned_at, b.wall.scanned_at);
+      a.wall.imaged_at = std::max(a.wall.imaged_at, b.wall.imaged_at);
       a.matched = a.matched || b.matched;
       walls_.erase(walls_.begin() + static_cast<std::ptrdiff_t>(j));
     }

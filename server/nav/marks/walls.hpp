@@ -30,11 +30,9 @@
 
 #include "base/vision.hpp"
 #include "nav/marks/lines.hpp"
+#include "nav/marks/source.hpp"
 
 namespace roverd::nav::marks {
-
-enum class Source { Scan, Vision };
-std::string_view to_string(Source s) noexcept;  // scan vision
 
 /// Seen of a wall: from and to, metres along it.
 struct Stretch {
@@ -67,6 +65,8 @@ struct Wall {
   int hits = 0;
   bool believed = false;
   base::Time seen_at;
+  base::Time scanned_at{};  ///< a scan told it last
+  base::Time imaged_at{};   ///< a vision program did
 
   Vec2 at(double along_m) const noexcept { return anchor + along_m * along; }
   /// Something told that it ends there, within 0.3 m.
@@ -101,6 +101,8 @@ class Walls {
 
   /// Believed and not yet.
   std::vector<Wall> all() const;
+  /// Those that are not known yet are counted from here on.
+  void number_from(std::uint32_t first) noexcept { next_ = first; }
 
  private:
   struct Kept {

@@ -134,7 +134,9 @@ class March {
   /// Past where a wall is not seen any further, though nothing told that it ends.
   bool went_on() const noexcept { return !went_on_.empty(); }
   /// When the wall beside it was seen last.
-  base::Time seen_at() const noexcept { return pieces_[start_.wall.piece].seen_at; }
+  base::Time seen_at() const noexcept { return beside().seen_at; }
+  /// The wall beside it.
+  const Piece& beside() const noexcept { return pieces_[start_.wall.piece]; }
   const std::vector<Sample>& samples() const noexcept { return samples_; }
 
  private:
@@ -324,6 +326,8 @@ std::optional<Way> wall_way(std::span<const Wall> walls, const Pose2& pose, Side
   Way way = Drawing(speed_mps, params.corner_m, sign / distance_m).take(march.samples());
   way.end = end;
   way.here_m = kBehind_m;
+  way.scanned_at = march.beside().scanned_at;
+  way.imaged_at = march.beside().imaged_at;
   way.offset_m = left_offset(march.start().at, march.start().along, {pose.x_m, pose.y_m});
   return way;
 }

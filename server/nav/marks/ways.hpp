@@ -48,6 +48,8 @@ struct Way {
   double here_m = 0.0;               ///< the vehicle's place along it, about
   double offset_m = 0.0;             ///< the vehicle is so far left of it
   WayEnd end = WayEnd::Horizon;
+  base::Time scanned_at{};  ///< a scan told the wall beside the vehicle last
+  base::Time imaged_at{};   ///< a vision program did
 };
 
 /// @param pose X_OB. @param side where the wall is. @return empty: no believed wall on that side

@@ -30,7 +30,7 @@ constexpr double kCentreWanders_m = 0.05;  // for each radian
 const double kYawAtFirst_rad = rad_from_deg(6.0);
 const double kYawUnknown_rad = rad_from_deg(15.0);
 constexpr double kFixed_m = 0.022;  // 1 sigma of an honest fixed solution, its slow part included
-constexpr double kLate_s = 0.1;     // by which its time is wrong all the time
+constexpr double kOffTime_s = 0.1;  // by which its time is wrong all the time
 constexpr double kJitter_s = 0.02;  // and by which it is from one to the next
 // The lies that are looked for.
 constexpr double kDrift_mps = 0.25;
@@ -99,7 +99,7 @@ void RunOff::begin(const Look& look) noexcept {
   const double place = std::hypot(look.spot.sigma_m, kFixed_m);
   const auto square = [](double v) { return v * v; };
   ground_.P.diagonal() << square(place), square(place), square(yaw_sigma), square(kScaleSigma),
-      square(kCrabSigma), square(slide), square(slide), square(kCentre_m), square(kLate_s), 0.0,
+      square(kCrabSigma), square(slide), square(slide), square(kCentre_m), square(kOffTime_s), 0.0,
       0.0;
   lie_ = suspect(Lies::Receiver);
   gyro_ = suspect(Lies::Gyro);

@@ -123,9 +123,11 @@ void Lookout::look_beside(const base::Sight& sight, std::size_t number) {
     return;
   }
   last = sight.stamp;
-  walls_.take(beside_scan_, wall_params_);
   chain_.movers(beside_scan_.stamp, movers_);
-  landmarks_.take(beside_scan_, landmark_params_, number, movers_);
+  marks_.take(nav::marks::Source::Scan, number, [&](nav::marks::Marks& to) {
+    to.walls.take(beside_scan_, wall_params_);
+    to.landmarks.take(beside_scan_, landmark_params_, number, movers_);
+  });
   tell_beside(beside_scan_.stamp, number);
 }
 
@@ -135,11 +137,15 @@ void Lookout::recognise(std::shared_ptr<const base::Vision> vision) {
   if (camera == cameras_.end() || !pose) return;
   const auto wall = nav::marks::wall_of(*vision, camera->mount, wall_params_);
   // Before the take: a glance must not call back a wall that is too old.
-  walls_.expire(vision->stamp, {pose->x_m, pose->y_m}, wall_params_);
-  if (wall) walls_.take(*wall, *pose, vision->stamp, wall_params_);
+  marks_.each([&](nav::marks::Marks& known) {
+    known.walls.expire(vision->stamp, {pose->x_m, pose->y_m}, wall_params_);
+  });
   // Numbered on from the sensors that look around.
   const auto eye = chain_.sensors() + static_cast<std::size_t>(camera - cameras_.begin());
-  landmarks_.take(*vision, camera->mount, *pose, camera->half_view_rad, landmark_params_, eye);
+  marks_.take(nav::marks::Source::Vision, eye, [&](nav::marks::Marks& to) {
+    if (wall) to.walls.take(*wall, *pose, vision->stamp, wall_params_);
+    to.landmarks.take(*vision, camera->mount, *pose, camera->half_view_rad, landmark_params_, eye);
+  });
   tell_beside(vision->stamp, eye);
   std::erase_if(images_, [&](const Image& old) { return old.seen->sensor == vision->sensor; });
   images_.push_back({std::move(vision), camera->mount});
@@ -153,8 +159,7 @@ void Lookout::tell_beside(base::Time seen, std::size_t eye) {
   if (beside_) view->looked_at = beside_->looked_at;
   if (view->looked_at.size() <= eye) view->looked_at.resize(eye + 1);
   view->looked_at[eye] = std::max(view->looked_at[eye], seen);
-  view->walls = walls_.all();
-  view->landmarks = landmarks_.all();
+  marks_.tell(*view);
   beside_ = std::move(view);
 }
 

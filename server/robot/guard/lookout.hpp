@@ -33,6 +33,7 @@
 #include "base/sensing.hpp"
 #include "base/sight.hpp"
 #include "base/vision.hpp"
+#include "nav/marks/by_source.hpp"
 #include "nav/marks/scan.hpp"
 #include "nav/marks/view.hpp"
 #include "nav/rows/finder.hpp"
@@ -111,9 +112,8 @@ class Lookout {
   };
   std::vector<std::optional<Counted>> counted_;  ///< by sensor: it says stop
   nav::marks::WallParams wall_params_;
-  nav::marks::Walls walls_;
   nav::marks::LandmarkParams landmark_params_;
-  nav::marks::Landmarks landmarks_;
+  nav::marks::BySource marks_;
   std::vector<nav::sense::Mover> movers_;  ///< who moved, at the last scan
   nav::marks::PlanarScan beside_scan_;     ///< the last one
   std::shared_ptr<const nav::marks::View> beside_;

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "nav/marks/choose.hpp"
 #include "nav/marks/course.hpp"
 #include "yard.hpp"
 
@@ -270,36 +269,6 @@ TEST(Landmarks, OutOfViewTheyAreKeptForAMinuteOfDrivingNotOfStanding) {
     marks.take(image({}, now += 500ms), {}, turned, 0.5, {});
   }
   EXPECT_TRUE(marks.all().empty()) << "70 s of driving";
-}
-
-TEST(Chooser, WhatIsSeenDecidesAndDoesNotFlicker) {
-  Chooser chooser;
-  base::Time now{1h};
-  const auto see = [&](InSight seen, int times) {
-    Guide last = Guide::None;
-    for (int i = 0; i < times; ++i) last = chooser.step(seen, {}, now += 100ms);
-    return last;
-  };
-  EXPECT_EQ(see({}, 1), Guide::None);
-  EXPECT_EQ(see({.wall_by_vision = true}, 1), Guide::WallByVision) << "at once where nobody steers";
-  EXPECT_EQ(see({.wall_by_scan = true, .wall_by_vision = true}, 3), Guide::WallByVision);
-  EXPECT_EQ(see({.wall_by_scan = true, .wall_by_vision = true}, 4), Guide::WallByScan);
-  EXPECT_EQ(see({.landmarks = true, .wall_by_scan = true}, 1), Guide::WallByScan) << "one glance";
-  EXPECT_EQ(see({.wall_by_scan = true}, 5), Guide::WallByScan);
-  EXPECT_EQ(see({.landmarks = true, .wall_by_scan = true}, 7), Guide::Landmarks);
-  EXPECT_EQ(see({.wall_by_scan = true}, 9), Guide::Landmarks) << "waited for a second";
-  EXPECT_EQ(see({.wall_by_scan = true}, 3), Guide::WallByScan);
-  EXPECT_EQ(see({}, 12), Guide::None);
-}
-
-TEST(Chooser, OneThatIsSetIsTheOnlyOne) {
-  Chooser chooser;
-  base::Time now{1h};
-  const InSight all{true, true, true};
-  EXPECT_EQ(chooser.step(all, guide_from("wall_by_scan"), now), Guide::WallByScan);
-  EXPECT_EQ(chooser.step({.landmarks = true}, Guide::WallByVision, now += 5s), Guide::None);
-  EXPECT_FALSE(guide_from("auto"));
-  EXPECT_EQ(to_string(Guide::Landmarks), "landmarks");
 }
 
 }  // namespace

@@ -69,6 +69,17 @@ const SEEING: ChoiceField = {
     ['rays', 'outermost_rays'],
   ],
 };
+const SOURCE: ChoiceField = {
+  kind: 'choice',
+  key: 'source',
+  label: 'seen_by',
+  choices: [
+    ['', 'word_default'],
+    ['auto', 'whoever_sees_it'],
+    ['scan', 'scanners_only'],
+    ['vision', 'cameras_only'],
+  ],
+};
 const TURN: ChoiceField = {
   kind: 'choice',
   key: 'turn',
@@ -126,6 +137,8 @@ export const fields_of: Record<ItemType, readonly Field[]> = {
     may('distance_m', 'distance', 'm', [0.01, 20]),
     may('speed_mps', 'speed', 'm/s', [0.01, 10]),
     may('length_m', 'ends_after', 'm', [0.01, 10_000]),
+    SOURCE,
+    { kind: 'flag', key: 'landmarks_first', label: 'landmarks_first' },
   ],
   landmarks: [
     { kind: 'text', key: 'name', label: 'name' },
@@ -133,6 +146,7 @@ export const fields_of: Record<ItemType, readonly Field[]> = {
     may('offset_m', 'offset', 'm', [-20, 20]),
     may('speed_mps', 'speed', 'm/s', [0.01, 10]),
     whole(may('count', 'ends_after', '', [0, 10_000])),
+    SOURCE,
   ],
   dock: [
     whole(must('tag', 'tag', '', [0, 586])),

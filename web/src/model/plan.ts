@@ -67,6 +67,8 @@ export interface Row extends EndsBeside {
   readonly distance_m?: number | null;
   readonly seeing?: 'line' | 'rays';
 }
+/** By whose word; absent: as the robot's parameters say. */
+export type SightSource = 'auto' | 'scan' | 'vision';
 export interface Wall extends EndsBeside {
   readonly type: 'wall';
   readonly side: Side;
@@ -74,6 +76,9 @@ export interface Wall extends EndsBeside {
   readonly distance_m?: number | null;
   readonly speed_mps?: number | null;
   readonly length_m?: number | null;
+  readonly source?: SightSource | null;
+  /** Those that stand along it are driven past first. */
+  readonly landmarks_first?: boolean;
 }
 export interface Landmarks {
   readonly type: 'landmarks';
@@ -85,6 +90,7 @@ export interface Landmarks {
   readonly speed_mps?: number | null;
   /** Done behind so many; absent: behind the last. */
   readonly count?: number | null;
+  readonly source?: SightSource | null;
 }
 /** Before a tag, by sight. */
 export interface Dock {

@@ -8,6 +8,7 @@ import { say } from './say';
 import { HEADING_DEG } from './sureness';
 import {
   fix_words,
+  type Lead,
   type FenceState,
   type Preview,
   type SmoothedItems,
@@ -34,6 +35,20 @@ export const tolerance_words = (mission: Vehicle['mission']): string => {
     arrival_radius: metres(arrival_radius_m),
     cross_track_limit: metres(cross_track_limit_m),
   });
+};
+
+/** What an item by sight is driven by right now, and who tells it. */
+export const lead_words = ({ what, source }: Lead): string => {
+  const leads = {
+    row: 'lead_row',
+    wall: 'lead_wall',
+    landmarks: 'lead_landmarks',
+    tag: 'lead_tag',
+  } as const;
+  const words = say(leads[what]);
+  return source === null
+    ? say('lead_unseen', { what: words })
+    : say('lead_by', { what: words, by: say(`seen_by_${source}`) });
 };
 
 /** How far the way is from its items. @param stretches the farthest first. Empty: it meets them. */

@@ -107,6 +107,13 @@ export interface Rc extends Measured {
 export interface Base extends Measured {
   readonly errors: readonly string[];
 }
+/** What an item by sight is driven by right now. */
+export interface Lead {
+  readonly what: 'row' | 'wall' | 'landmarks' | 'tag';
+  /** Null: it is looked for, or remembered. */
+  readonly source: 'scan' | 'vision' | 'both' | null;
+  readonly by: 'auto' | 'scan' | 'vision';
+}
 export interface MissionProgress {
   readonly id: string | null;
   readonly revision: number | null;
@@ -115,6 +122,7 @@ export interface MissionProgress {
   readonly reason: string;
   /** It stays at a place until somebody says to go on. */
   readonly waits_for_word: boolean;
+  readonly lead: Lead | null;
   /** From 1; null: none. */
   readonly current_item: number | null;
   readonly items: number;
