@@ -28,6 +28,8 @@ export interface Draft {
   /** Which of those steps cut a mission in two. */
   readonly cuts?: readonly KeptCut[];
   readonly tried?: Tried;
+  /** It was to be saved, and nobody answered. */
+  readonly owed?: boolean;
 }
 
 /** The robot has loaded what is edited, as it is. */
@@ -122,5 +124,6 @@ export const parse_draft = (text: string | null): Draft | null => {
     ...(is_steps(value['steps']) ? { steps: value['steps'] } : {}),
     ...(value['cuts'] === undefined ? {} : { cuts: checked_cuts(value['cuts']) }),
     ...(is_tried(value['tried']) ? { tried: value['tried'] } : {}),
+    ...(value['owed'] === true ? { owed: true } : {}),
   };
 };

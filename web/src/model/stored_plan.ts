@@ -22,3 +22,25 @@ export const body_of = (plan: Plan) => ({
   ...(plan.frame ? { frame: plan.frame } : {}),
   ...(plan.drawing ? { drawing: plan.drawing } : {}),
 });
+
+/** Without what says nothing: the robot leaves it out. */
+const said = (value: unknown): unknown => {
+  if (Array.isArray(value)) return value.map(said);
+  if (typeof value !== 'object' || value === null) return value;
+  return Object.fromEntries(
+    Object.entries(value)
+      .filter(([, each]) => each !== null && each !== undefined && each !== false)
+      .sort(([a], [b]) => (a < b ? -1 : 1))
+      .map(([name, each]) => [name, said(each)]),
+  );
+};
+
+const same = (a: unknown, b: unknown): boolean =>
+  JSON.stringify(said(a)) === JSON.stringify(said(b));
+
+/** @param stored by the robot, which fills in the settings that were left out */
+export const same_plan = (plan: Plan, stored: Plan): boolean => {
+  const { settings, ...rest } = body_of(plan);
+  const { settings: theirs, ...all } = body_of(stored);
+  return same(rest, all) && same({ ...theirs, ...settings }, theirs);
+};

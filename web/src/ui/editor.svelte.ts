@@ -1,6 +1,6 @@
 // The mission being edited: its history, what is stored of it, and the draft on the device.
 
-import { type Answer, failure_text, refusal_text, refused_items } from '../model/answer';
+import { failure_text, refusal_text } from '../model/answer';
 import { append_waypoint, insert_waypoint, move_waypoint, remove_item } from '../model/actions';
 import type { PlanAction } from '../model/actions';
 import { cuts_revived } from '../model/cuts';
@@ -21,6 +21,7 @@ import type { Dialogs } from './dialogs.svelte';
 import type { Kept, Preview } from './edited';
 import { fresh_key } from './fresh_key';
 import type { Notices } from './notices.svelte';
+import { Saving } from './saving.svelte';
 import { Splits } from './splits.svelte';
 
 const DRAFT_AFTER_MS = 300;
@@ -39,7 +40,6 @@ export class Editor implements Drawing {
   picked = $state.raw<Picked>(NOTHING_PICKED);
   /** A dragged point is caught by what lies near. */
   snaps = $state(true);
-  saving = $state(false);
   /** What somebody else stored meanwhile, while the person chooses. */
   theirs = $state.raw<Plan | null>(null);
   refused = $state.raw<ReadonlySet<number>>(new Set());
@@ -55,6 +55,7 @@ export class Editor implements Drawing {
 
   readonly #calls: MissionCalls;
   readonly #first: FirstSave;
+  readonly #saving: Saving;
   readonly #storage: DraftStorage;
   /** Of missions that are not here now. */
   readonly #past: DraftStorage;
@@ -66,11 +67,16 @@ export class Editor implements Drawing {
   constructor(calls: MissionCalls, kept: Kept, notices: Notices, dialogs: Dialogs) {
     this.#calls = calls;
     this.#first = new FirstSave(calls, fresh_key);
+    this.#saving = new Saving(this, calls, this.#first, notices, dialogs);
     this.#storage = kept.draft;
     this.#past = kept.past;
     this.#notices = notices;
     this.#dialogs = dialogs;
     this.#splits = new Splits(calls, notices, () => this.write_draft());
+  }
+
+  get saving(): boolean {
+    return this.#saving.busy;
   }
 
   /** Every tap on the map adds a waypoint. */
@@ -170,9 +176,9 @@ export class Editor implements Drawing {
 
   /** The first part stays here, to be saved; the second one is stored as a mission of its own. */
   async split(parts: readonly [Plan, Plan]): Promise<void> {
-    this.saving = true;
+    this.#saving.busy = true;
     const first = await this.#splits.make(parts);
-    this.saving = false;
+    this.#saving.busy = false;
     if (!first) return;
     this.do(() => first);
     this.choose_tool('edit');
@@ -225,77 +231,22 @@ export class Editor implements Drawing {
     });
   }
 
-  async save(): Promise<boolean> {
-    if (this.saving) return false;
-    if (this.why_not_save !== null) {
-      this.#notices.show('warning', this.why_not_save, 'save');
-      return false;
-    }
-    this.saving = true;
-    try {
-      const plan = this.plan;
-      const answer =
-        this.stored === null
-          ? await this.#first.create(plan, () => this.write_draft())
-          : await this.#calls.replace(this.stored.id, this.stored.revision, plan);
-      return await this.#after_save(plan, answer);
-    } finally {
-      this.saving = false;
-    }
+  /** @return it is stored */
+  save(): Promise<boolean> {
+    return this.#saving.save();
   }
 
-  async #after_save(plan: Plan, answer: Answer<Mission>): Promise<boolean> {
-    if (answer.ok) {
-      this.stored = { id: answer.value.id, revision: answer.value.revision };
-      this.#saved_plan = plan;
-      this.refused = new Set();
-      this.write_draft();
-      this.#notices.show(
-        'good',
-        say('saved_name_revision_revision', { name: plan.name, revision: answer.value.revision }),
-        'save',
-      );
-      return true;
-    }
-    const { refusal } = answer;
-    if (refusal.status === 412) return this.#settle_conflict(plan, refusal.current ?? null);
-    if (refusal.status === 404 && this.stored !== null) return this.#save_as_new(plan);
-    this.refused = refused_items(refusal);
-    this.#notices.show('error', failure_text(say('done_saved'), refusal), 'save');
-    return false;
+  /** What nobody answered, as soon as the robot answers again. */
+  save_again(): Promise<void> {
+    return this.#saving.again();
   }
 
-  /** Somebody deleted it meanwhile: what is on the screen must not be lost. */
-  async #save_as_new(plan: Plan): Promise<boolean> {
-    this.stored = null;
-    this.#notices.show('warning', say('the_stored_mission_was_deleted'));
-    return this.#after_save(plan, await this.#calls.create(plan));
-  }
-
-  async #settle_conflict(plan: Plan, current: Mission | null): Promise<boolean> {
-    const stored = this.stored;
-    if (stored === null) return false;
-    const theirs = current ?? (await this.#read(stored.id));
-    if (theirs === null) return false;
-    this.theirs = plan_of(theirs);
-    const choice = await this.#dialogs.conflict(stored.revision, theirs);
-    this.theirs = null;
-    switch (choice) {
-      case 'theirs':
-        this.adopt(theirs);
-        return false;
-      case 'copy': {
-        const copy = { ...plan, name: say('name_copy', { name: plan.name }) };
-        const answer = await this.#calls.create(copy);
-        if (answer.ok) this.do((now) => (now === plan ? copy : { ...now, name: copy.name }));
-        return this.#after_save(copy, answer);
-      }
-      case 'overwrite':
-        this.stored = { id: theirs.id, revision: theirs.revision };
-        return this.#after_save(plan, await this.#calls.replace(theirs.id, theirs.revision, plan));
-      case 'cancel':
-        return false;
-    }
+  /** The robot has stored it. */
+  stored_as(plan: Plan, stored: Stored): void {
+    this.stored = stored;
+    this.#saved_plan = plan;
+    this.refused = new Set();
+    this.write_draft();
   }
 
   /** Takes the stored state as one more step, so that undo brings one's own work back. */
@@ -310,7 +261,7 @@ export class Editor implements Drawing {
     this.selected = null;
   }
 
-  async #read(id: string): Promise<Mission | null> {
+  async read(id: string): Promise<Mission | null> {
     const answer = await this.#calls.read(id);
     if (answer.ok) return answer.value;
     this.#notices.show('error', refusal_text(answer.refusal));
@@ -319,7 +270,13 @@ export class Editor implements Drawing {
 
   /** The stream says that a stored mission changed. */
   async stored_changed(id: string, revision: number | null): Promise<void> {
-    if (this.saving || this.stored?.id !== id || this.stored.revision === revision) return;
+    if (
+      this.saving ||
+      this.#saving.owed ||
+      this.stored?.id !== id ||
+      this.stored.revision === revision
+    )
+      return;
     if (revision === null) {
       this.stored = null;
       this.#saved_plan = null;
@@ -327,7 +284,7 @@ export class Editor implements Drawing {
     } else if (this.unsaved) {
       this.#notices.show('warning', say('somebody_saved_revision_revision_of', { revision }));
     } else {
-      const mission = await this.#read(id);
+      const mission = await this.read(id);
       if (mission && !this.unsaved) this.adopt(mission);
     }
   }
@@ -344,6 +301,7 @@ export class Editor implements Drawing {
     this.#saved_plan = draft.unsaved ? saved : draft.plan;
     this.stored = draft.stored;
     this.#first.tried = draft.tried ?? null;
+    this.#saving.owe(draft.owed === true);
     this.adding = draft.plan.items.length === 0;
     if (draft.unsaved) {
       this.#notices.show(
@@ -357,7 +315,7 @@ export class Editor implements Drawing {
   write_draft(): void {
     clearTimeout(this.#draft_timer);
     const { history, plan, stored, unsaved } = this;
-    const draft = { plan, stored, unsaved };
+    const draft = { plan, stored, unsaved, ...(this.#saving.owed ? { owed: true } : {}) };
     const { tried } = this.#first;
     const steps = { steps: steps_of(history, this.#saved_plan), cuts: this.#splits.kept(history) };
     // Where there is no room for what can be undone, the plan itself goes before.
@@ -378,6 +336,7 @@ export class Editor implements Drawing {
     this.#saved_plan = history.present;
     this.stored = stored;
     this.#first.tried = null;
+    this.#saving.owe(false);
     this.selected = null;
     this.picked = NOTHING_PICKED;
     this.refused = new Set();

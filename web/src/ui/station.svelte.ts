@@ -196,6 +196,7 @@ export class Station {
       if (link.socket !== 'open' || was_open) return;
       void this.#fetch_past_events(this.live.vehicle ? this.notices.looked : null);
       this.resumption.connected();
+      void this.editor.save_again();
       this.#past_way.connected();
     },
     on_hello: (capabilities) => {

@@ -2,6 +2,8 @@
 
 export const state = {
   it_is_not_known_whether_it_was_done: 'It is not known whether it was {done}: no answer came.',
+  saved_when_the_robot_is_back:
+    'Not saved yet, no answer came: it is kept here, and saved when the robot answers.',
   not_done_refusal: 'Not {done}: {refusal}',
   script_name: 'script {name}',
   nobody_has_control: 'Nobody has control',

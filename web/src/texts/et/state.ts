@@ -2,6 +2,8 @@
 
 export const state = {
   it_is_not_known_whether_it_was_done: 'Pole teada, kas see on {done}: vastust ei tulnud.',
+  saved_when_the_robot_is_back:
+    'Veel salvestamata, vastust ei tulnud: see on siin alles ja salvestatakse, kui robot vastab.',
   not_done_refusal: 'Pole {done}: {refusal}',
   script_name: 'skript {name}',
   nobody_has_control: 'Keegi ei juhi',

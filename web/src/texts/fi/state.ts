@@ -2,6 +2,8 @@
 
 export const state = {
   it_is_not_known_whether_it_was_done: 'Ei tiedetä, onko se {done}: vastausta ei tullut.',
+  saved_when_the_robot_is_back:
+    'Ei vielä tallennettu, vastausta ei tullut: se on tallessa täällä ja tallennetaan, kun robotti vastaa.',
   not_done_refusal: 'Ei {done}: {refusal}',
   script_name: 'skripti {name}',
   nobody_has_control: 'Ohjaus on vapaa',

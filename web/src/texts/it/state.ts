@@ -2,6 +2,8 @@
 
 export const state = {
   it_is_not_known_whether_it_was_done: 'Non si sa se è stato {done}: nessuna risposta.',
+  saved_when_the_robot_is_back:
+    'Non ancora salvato, nessuna risposta: resta qui e si salva quando il robot risponde.',
   not_done_refusal: 'Non {done}: {refusal}',
   script_name: 'script {name}',
   nobody_has_control: 'Nessuno ha il controllo',

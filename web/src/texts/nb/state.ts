@@ -2,6 +2,8 @@
 
 export const state = {
   it_is_not_known_whether_it_was_done: 'Det er ikke kjent om det ble {done}: intet svar kom.',
+  saved_when_the_robot_is_back:
+    'Ikke lagret ennå, intet svar kom: det er trygt her og lagres når roboten svarer.',
   not_done_refusal: 'Ikke {done}: {refusal}',
   script_name: 'skript {name}',
   nobody_has_control: 'Ingen har kontroll',
