@@ -180,7 +180,7 @@ def cones_by_camera():
 
 
 def cones_first():
-    """along a wall by scanner and camera, past the cone that stands in the way first: who leads is told"""
+    """along a wall by the scanner, past the cone that stands in the way first: who leads is told"""
     cone = [-0.15, 1.0]
     led = []
 

@@ -53,7 +53,7 @@ std::vector<base::ParamValue> others(const Parameter& p) {
   if (p.section == "battery") return {std::string("40 0, 50 50, 60 100")};
   std::vector<base::ParamValue> words;
   for (const char* word : {"pure_pursuit", "stanley", "skip", "return", "ackermann", "here",
-                           "around", "home.set", "estop", "mode.acro", "none"}) {
+                           "around", "home.set", "estop", "mode.acro", "none", "vision"}) {
     words.emplace_back(std::string(word));
   }
   return words;
