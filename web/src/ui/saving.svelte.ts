@@ -64,7 +64,7 @@ export class Saving {
       const { plan, stored } = editor;
       const answer =
         stored === null
-          ? await this.#first.create(plan, () => editor.write_draft())
+          ? await this.#create(plan)
           : await this.#calls.replace(stored.id, stored.revision, plan);
       return await this.#after(plan, answer);
     } finally {
@@ -72,8 +72,14 @@ export class Saving {
     }
   }
 
+  /** As a mission of its own; sent again, it is the same one. */
+  #create(plan: Plan): Promise<Answer<Mission>> {
+    return this.#first.create(plan, () => this.#editor.write_draft());
+  }
+
   async #after(plan: Plan, answer: Answer<Mission>): Promise<boolean> {
     const editor = this.#editor;
+    const told = this.owed;
     this.owe(!answer.ok && answer.refusal.status === 0);
     if (answer.ok) {
       const { id, revision } = answer.value;
@@ -87,7 +93,7 @@ export class Saving {
     }
     const { refusal } = answer;
     if (this.owed) {
-      this.#notices.show('warning', say('saved_when_the_robot_is_back'), 'save');
+      if (!told) this.#notices.show('warning', say('saved_when_the_robot_is_back'), 'save');
       return false;
     }
     if (refusal.status === 412) return this.#settle_conflict(plan, refusal.current ?? null);
@@ -101,7 +107,7 @@ export class Saving {
   async #save_as_new(plan: Plan): Promise<boolean> {
     this.#editor.stored = null;
     this.#notices.show('warning', say('the_stored_mission_was_deleted'));
-    return this.#after(plan, await this.#calls.create(plan));
+    return this.#after(plan, await this.#create(plan));
   }
 
   async #settle_conflict(plan: Plan, current: Mission | null): Promise<boolean> {
@@ -109,7 +115,11 @@ export class Saving {
     const { stored } = editor;
     if (stored === null) return false;
     const theirs = current ?? (await editor.read(stored.id));
-    if (theirs === null) return false;
+    if (theirs === null) {
+      // Whoever was not there to be asked may be there later.
+      this.owe(true);
+      return false;
+    }
     // It was stored, and the answer was lost.
     if (same_plan(plan, plan_of(theirs))) return this.#after(plan, { ok: true, value: theirs });
     editor.theirs = plan_of(theirs);
@@ -121,7 +131,7 @@ export class Saving {
         return false;
       case 'copy': {
         const copy = { ...plan, name: say('name_copy', { name: plan.name }) };
-        const answer = await this.#calls.create(copy);
+        const answer = await this.#create(copy);
         if (answer.ok) editor.do((now) => (now === plan ? copy : { ...now, name: copy.name }));
         return this.#after(copy, answer);
       }
