@@ -7,10 +7,11 @@
 namespace roverd::nav {
 namespace {
 
-constexpr double kAhead = 0.7;      // cos 45 degrees: so far aside it is not ahead any more
-constexpr double kInTheWay = 0.5;   // of the offset, on the other side
-constexpr double kGivenUp_m = 1.0;  // of way, before another one is begun with
-constexpr double kOffset_m = 0.1;   // more than the offset, for the first bend
+constexpr double kAhead = 0.7;           // cos 45 degrees: so far aside it is not ahead any more
+constexpr double kInTheWay = 0.5;        // of the offset, on the other side
+constexpr double kGivenUp_m = 1.0;       // of way, before another one is begun with
+constexpr double kBesidePlace_m = 10.0;  // a place that lies farther off is not passed
+constexpr double kOffset_m = 0.1;        // more than the offset, for the first bend
 
 }  // namespace
 
@@ -29,6 +30,7 @@ void AlongWall::begin(const Order& order) noexcept {
 void AlongWall::reset() noexcept {
   wall_.reset();
   landmarks_.reset();
+  until_.reset();
   passes_ = false;
   seen_since_.reset();
   not_before_m_ = 0.0;
@@ -47,7 +49,7 @@ bool AlongWall::one_ahead(const MarkSight& sight) const noexcept {
   const double side = order_.wall.side == marks::Side::Left ? 1.0 : -1.0;
   const double offset_m = landmarks_.offset_m();
   return std::ranges::any_of(
-      sight.view->landmarks_by(landmarks_.by()), [&](const marks::Landmark& l) {
+      sight.view->landmarks_by(landmarks_by()), [&](const marks::Landmark& l) {
         if (!l.believed) return false;
         if (base::seconds(sight.now - l.seen_at) > params_.sight->old_s) return false;
         const marks::Vec2 at = marks::placed(to_body, l.at);
@@ -66,13 +68,18 @@ void AlongWall::choose(const MarkSight& sight) {
   LandmarkDrive::Order pass;
   pass.side = order_.wall.side;
   pass.speed_mps = order_.wall.speed_mps;
+  pass.by = order_.wall.by;
   landmarks_.begin(std::move(pass));
   passes_ = true;
-  wall_.count(sight.body);
+  wall_.carried(sight.body);
 }
 
-bool AlongWall::far_enough() const noexcept {
-  return order_.wall.length_m && wall_.driven_m() >= *order_.wall.length_m;
+/// As far as the item goes, or past the place that ends it.
+bool AlongWall::far_enough(const marks::Pose2& body) const noexcept {
+  if (order_.wall.length_m && wall_.driven_m() >= *order_.wall.length_m) return true;
+  if (!until_) return false;
+  const marks::Vec2 at = marks::placed(sense::inverse(body), {until_->east_m, until_->north_m});
+  return at.x <= 0.0 && std::hypot(at.x, at.y) <= kBesidePlace_m;
 }
 
 TrackOutput AlongWall::step(const MarkSight& sight, const Vehicle& vehicle, double limit_mps,
@@ -81,11 +88,17 @@ TrackOutput AlongWall::step(const MarkSight& sight, const Vehicle& vehicle, doub
   if (order_.landmarks_first && under_way && !passes_) choose(sight);
   if (!passes_) return wall_.step(sight, vehicle, limit_mps, dt_s);
   const TrackOutput out = landmarks_.step(sight, vehicle, limit_mps, dt_s);
-  wall_.count(sight.body);
+  wall_.carried(sight.body);
   using Passing = LandmarkDrive::State;
   const bool passing =
       landmarks_.state() == Passing::Seeking || landmarks_.state() == Passing::Driving;
-  if (passing && !far_enough()) return out;
+  if (far_enough(sight.body)) {
+    passes_ = false;
+    landmarks_.reset();
+    wall_.finish();
+    return {};
+  }
+  if (passing) return out;
   if (landmarks_.state() == Passing::Failed) not_before_m_ = wall_.driven_m() + kGivenUp_m;
   passes_ = false;
   seen_since_.reset();

@@ -5,9 +5,10 @@
 //   wall ──a landmark ahead, seen for kSure_s──▶ landmarks ──behind the last one──▶ wall
 //                                                   └──gone before it was passed──▶ wall
 //
-// The wall alone says where the item ends. Landmarks count where they stand ahead on the wall's
-// side, or so far over in the way that it must leave it for them; nearer than it passes them none
-// is begun with. Control thread; allocates when it lays a way.
+// The wall says where the item ends, or how far it goes: that holds past landmarks, too. Landmarks
+// count where they stand ahead on the wall's side, or so far over in the way that it must leave it
+// for them; nearer than it passes them none is begun with. Control thread; allocates when it lays a
+// way.
 
 #include <optional>
 #include <string>
@@ -34,7 +35,10 @@ class AlongWall {
   /// Somebody else drives; the next step goes on from wherever the robot is then.
   void interrupt() noexcept;
   /// It ends at the latest beside this place of O, as it is known by now.
-  void end_beside(EnuPoint place) noexcept { wall_.end_beside(place); }
+  void end_beside(EnuPoint place) noexcept {
+    until_ = place;
+    wall_.end_beside(place);
+  }
 
   /// @param vehicle as everywhere; its place and direction are taken from the sight.
   TrackOutput step(const MarkSight& sight, const Vehicle& vehicle, double limit_mps, double dt_s);
@@ -57,12 +61,14 @@ class AlongWall {
  private:
   bool one_ahead(const MarkSight& sight) const noexcept;
   void choose(const MarkSight& sight);
-  bool far_enough() const noexcept;
+  bool far_enough(const marks::Pose2& body) const noexcept;
+  marks::By landmarks_by() const noexcept { return order_.wall.by.value_or(landmarks_.by()); }
 
   MarkSettings params_;
   WallDrive wall_;
   LandmarkDrive landmarks_;
   Order order_;
+  std::optional<EnuPoint> until_;  ///< in O
   bool passes_ = false;
   std::optional<base::Time> seen_since_;  ///< one ahead, without a gap
   double not_before_m_ = 0.0;             ///< of way along the wall: one was given up

@@ -131,8 +131,8 @@ TrackPhase WallDrive::phase() const noexcept {
 }
 
 /// Forward along the body's own direction.
-void WallDrive::count(const marks::Pose2& body) noexcept {
-  if (last_ && state_ == State::Driving) {
+void WallDrive::count(const marks::Pose2& body, bool counts) noexcept {
+  if (last_ && counts) {
     driven_m_ += (body.x_m - last_->x_m) * std::cos(body.yaw_rad) +
                  (body.y_m - last_->y_m) * std::sin(body.yaw_rad);
   }
@@ -141,6 +141,15 @@ void WallDrive::count(const marks::Pose2& body) noexcept {
 
 double WallDrive::distance_m() const noexcept {
   return order_.distance_m.value_or(params_.walls->distance_m);
+}
+
+void WallDrive::carried(const marks::Pose2& body) noexcept {
+  count(body, true);
+}
+
+void WallDrive::finish() noexcept {
+  drive_.reset();
+  state_ = State::Done;
 }
 
 marks::By WallDrive::by() const noexcept {
@@ -227,7 +236,7 @@ TrackOutput WallDrive::step(const MarkSight& sight, const Vehicle& vehicle, doub
     return {};
   }
   const Vehicle v = by_odometry(sight, vehicle);
-  count(sight.body);
+  count(sight.body, state_ == State::Driving);
   unseen_s_ = look(sight) ? 0.0 : unseen_s_ + dt_s;
   if (state_ == State::Seeking) seek(sight.body);
   if (state_ == State::Failed) return {};

@@ -48,7 +48,9 @@ class WallDrive {
   const std::string& reason() const noexcept { return reason_; }  ///< why Failed
   double driven_m() const noexcept { return driven_m_; }
   /// Somebody else drives it along the wall for a while, which counts.
-  void count(const marks::Pose2& body) noexcept;
+  void carried(const marks::Pose2& body) noexcept;
+  /// It is done: somebody else has driven it to its end.
+  void finish() noexcept;
   marks::By by() const noexcept;
   /// Who tells the wall beside it, right now. Nobody: it is looked for, or remembered.
   ToldBy told_by(base::Time now) const noexcept;
@@ -57,6 +59,7 @@ class WallDrive {
   TrackPhase phase() const noexcept;
 
  private:
+  void count(const marks::Pose2& body, bool counts) noexcept;
   double distance_m() const noexcept;
   bool look(const MarkSight& sight);
   void seek(const marks::Pose2& body);

@@ -205,6 +205,47 @@ TEST(AlongWall, LandmarksFarOverOnTheOtherSideLeadNothing) {
   EXPECT_LT(a.farthest_y_m, 0.1);
 }
 
+// Cones in a row, all the way.
+TEST(AlongWall, PastLandmarksItEndsAfterItsLengthToo) {
+  for (const bool paused : {false, true}) {
+    Aisle a;
+    for (double x = 4.0; x < 20.0; x += 2.0) a.yard.poles.push_back({{x, 0.2}, 0.08});
+    auto order = along(9.0);
+    order.landmarks_first = true;
+    a.begin(order);
+    a.run(9.0);
+    ASSERT_TRUE(a.item.passes()) << a.rover.truth.x_m;
+    if (paused) a.item.interrupt();
+    a.run(30.0);
+    EXPECT_EQ(a.item.state(), AlongWall::State::Done) << a.item.reason();
+    EXPECT_NEAR(a.rover.truth.x_m, 9.0, 0.5) << paused;
+  }
+}
+
+TEST(AlongWall, PastLandmarksItEndsBesideItsPlaceToo) {
+  Aisle a;
+  for (double x = 4.0; x < 20.0; x += 2.0) a.yard.poles.push_back({{x, 0.2}, 0.08});
+  auto order = along(30.0);
+  order.landmarks_first = true;
+  a.begin(order);
+  a.item.end_beside({9.0, 2.0});
+  a.run(30.0);
+  EXPECT_EQ(a.item.state(), AlongWall::State::Done) << a.item.reason();
+  EXPECT_NEAR(a.rover.truth.x_m, 9.0, 0.5);
+}
+
+TEST(AlongWall, ALandmarkThatOnlyTheOtherKindSeesLeadsNothing) {
+  Aisle a;
+  a.plane_y_m = kWall_m;
+  a.yard.poles = {{{5.0, 0.2}, 0.08}};
+  auto order = along(3.0);
+  order.wall.by = By::Vision;
+  order.landmarks_first = true;
+  a.begin(order);
+  a.run(10.0);
+  EXPECT_EQ(a.led, "w");
+}
+
 TEST(AlongWall, InterruptedWhileItPassesOneItGoesOnPastIt) {
   Aisle a;
   a.yard.poles = {{{5.0, 0.2}, 0.08}};

@@ -5,6 +5,9 @@ import type { Tried } from './draft';
 import type { Plan } from './plan';
 import type { Mission, MissionCalls } from './ports';
 
+/** A robot that is busy or in trouble says nothing of what arrived before. */
+const said_no = (status: number): boolean => status !== 0 && status !== 429 && status < 500;
+
 export class FirstSave {
   /** Kept with the draft; null: nothing is open. */
   tried: Tried | null = null;
@@ -24,7 +27,7 @@ export class FirstSave {
     this.tried = tried;
     keep();
     const answer = await this.#calls.create(tried.plan, tried.key);
-    const is_known = answer.ok || answer.refusal.status !== 0;
+    const is_known = answer.ok || said_no(answer.refusal.status);
     if (!answer.ok || JSON.stringify(tried.plan) === JSON.stringify(plan)) {
       if (is_known) this.tried = null;
       return answer;

@@ -336,7 +336,7 @@ export class Editor implements Drawing {
     this.#saved_plan = history.present;
     this.stored = stored;
     this.#first.tried = null;
-    this.#saving.owe(false);
+    this.#saving.begin_anew();
     this.selected = null;
     this.picked = NOTHING_PICKED;
     this.refused = new Set();

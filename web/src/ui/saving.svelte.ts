@@ -14,6 +14,8 @@ import { Owed } from './owed';
 
 export class Saving {
   busy = $state(false);
+  /** Another one: another mission is on the screen. */
+  #round = 0;
   readonly #owed = new Owed(() => void this.again());
   readonly #editor: Editor;
   readonly #calls: MissionCalls;
@@ -44,11 +46,22 @@ export class Saving {
     if (this.#owed.set(owed)) this.#editor.write_draft();
   }
 
+  /** Another mission comes; what is on its way is not its own. */
+  begin_anew(): void {
+    this.#round += 1;
+    this.owe(false);
+  }
+
   /** The robot answers again, or may. */
   async again(): Promise<void> {
-    if (!this.owed || this.busy) return;
-    if (!this.#editor.unsaved) this.owe(false);
-    else if (this.#editor.why_not_save === null) await this.save();
+    if (!this.owed) return;
+    const { stored, unsaved } = this.#editor;
+    if (this.busy) this.owe(true);
+    else if (!unsaved) {
+      // Undone meanwhile: but the robot may have it.
+      this.owe(false);
+      if (stored !== null) await this.#editor.stored_changed(stored.id, -1);
+    } else if (this.#editor.why_not_save === null) await this.save();
     else this.owe(true);
   }
 
@@ -62,11 +75,12 @@ export class Saving {
     this.busy = true;
     try {
       const { plan, stored } = editor;
+      const round = this.#round;
       const answer =
         stored === null
           ? await this.#create(plan)
           : await this.#calls.replace(stored.id, stored.revision, plan);
-      return await this.#after(plan, answer);
+      return round === this.#round ? await this.#after(plan, answer) : answer.ok;
     } finally {
       this.busy = false;
     }
