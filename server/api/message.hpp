@@ -42,6 +42,11 @@ struct Call {
 };
 using CallPtr = std::shared_ptr<Call>;
 
+/// For the events, which tell people who did it. @param who empty: nobody is known by name
+inline std::string words_for(const std::optional<people::Who>& who) {
+  return who ? who->user : "the page or a script";
+}
+
 /// Empty if it is not there.
 inline std::string_view header(const Request& request, http::field name) {
   const auto value = request[name];

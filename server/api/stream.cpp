@@ -166,7 +166,7 @@ base::Result<void> StreamTexts::read(ClientId id, Client& client, const Json& me
                                      base::Time begun) {
   // Before all else, whatever else the message says, and whoever says it.
   if (message.is_object() && message.value("estop", Json()) == true) {
-    estop(id);
+    estop(id, client);
     context_->audit.stopped(client.who, client.address, "estop", Access::now());
   }
   if (!may(id, client, message)) return {};
@@ -205,9 +205,9 @@ base::Result<void> StreamTexts::read(ClientId id, Client& client, const Json& me
   return {};
 }
 
-void StreamTexts::estop(ClientId id) {
+void StreamTexts::estop(ClientId id, const Client& client) {
   context_->commands.run(
-      robot::Estop{"the page or a script"}, base::Time::max(), base::steady_now(),
+      robot::Estop{words_for(client.who)}, base::Time::max(), base::steady_now(),
       [this, id](const base::Result<void>& done) {
         // Without an answer the client says it again.
         if (!done) return;

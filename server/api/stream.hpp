@@ -69,7 +69,7 @@ class StreamTexts {
   base::Result<void> throttle(ClientId id, Client& client, Members& message, base::Time begun);
   void drop_speed(ClientId id, Client& client);
   void drive_refused(ClientId id, const base::Error& error);
-  void estop(ClientId id);
+  void estop(ClientId id, const Client& client);
   void confirm_estop(ClientId id);
   base::Result<void> halt(const robot::Command& command);
   void answer_ping(ClientId id, double ping);

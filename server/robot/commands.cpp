@@ -125,18 +125,29 @@ void Robot::Impl::disarm(const std::string& why) {
 }
 
 base::Result<void> Robot::Impl::handle(const Estop& c) {
+  if (unnamed_stop) tell_stop(c.who);
   latch_estop(c.who);
   return {};
 }
 
 void Robot::Impl::latch_estop(const std::string& who) {
+  if (latch_silently()) tell_stop(who);
+}
+
+/// @return false: it was latched already
+bool Robot::Impl::latch_silently() {
   const ArmSwitch::Latch latch = arm.latch();
-  if (!latch.newly) return;
+  if (!latch.newly) return false;
   by_hand.lock("the emergency stop was pressed", clock.now());
   base_watch.ask_anew();
   if (latch.disarmed) event(Severity::Warning, "disarmed", "disarmed by the emergency stop");
   change_mode(ModeCause::Estop, "emergency stop");
+  return true;
+}
+
+void Robot::Impl::tell_stop(const std::string& who) {
   event(Severity::Error, "estop", "emergency stop" + (who.empty() ? "" : " by " + who));
+  unnamed_stop.reset();
 }
 
 base::Result<void> Robot::Impl::handle(const ResetEstop&) {
@@ -144,6 +155,7 @@ base::Result<void> Robot::Impl::handle(const ResetEstop&) {
   if (const std::string still = release_refusal(world); !still.empty()) {
     return base::fail(Code::Conflict, still);
   }
+  if (unnamed_stop) tell_stop("the operator");
   arm.release();
   estop_asked.store(false);
   change_mode(ModeCause::EstopReset, "emergency stop released");

@@ -98,7 +98,8 @@ struct Robot::Impl {
   Delivered<CompiledMission> loaded;
   Delivered<LaidFence> shared_fence;
   std::atomic<bool> estop_asked{false};
-  std::atomic<std::uint64_t> made{1};       ///< ids of missions and fences that are laid out
+  std::optional<Time> unnamed_stop;    ///< latched then; who asked for it comes with the command
+  std::atomic<std::uint64_t> made{1};  ///< ids of missions and fences that are laid out
   std::atomic<std::uint32_t> frame_ids{2};  ///< 1 is for the first fix
   Outbox outbox;
 
@@ -191,6 +192,7 @@ struct Robot::Impl {
 
   // tick, in this order (robot.cpp, commands.cpp, radio/panel.cpp, decide.cpp, publish.cpp)
   void take_estop(Time now);
+  void name_stop(Time now);
   void take_commands();
   base::Result<void> carry_out(const PendingCommand& pending);
   void take_measurements();
@@ -256,6 +258,8 @@ struct Robot::Impl {
   bool change_mode(ModeCause cause, const std::string& why, Mode chosen = Mode::Hold);
   void disarm(const std::string& why);
   void latch_estop(const std::string& who);
+  bool latch_silently();
+  void tell_stop(const std::string& who);
   void hold(const std::string& why);
   /// Nothing where home is out of the map's reach.
   std::optional<base::EnuPoint> home_point() const;

@@ -359,7 +359,15 @@ void Robot::Impl::take_estop(Time now) {
   // later, it would refuse the reset of whoever was answered in between.
   if (!estop_asked.exchange(false) || arm.latched()) return;
   last_stop.take(now);
-  latch_estop("the operator");
+  unnamed_stop = now;
+  latch_silently();
+}
+
+constexpr base::Duration kStopNamed = std::chrono::milliseconds(200);
+
+/// Its command says by whom, a tick later or two; one that does not come leaves it unnamed.
+void Robot::Impl::name_stop(Time now) {
+  if (unnamed_stop && now - *unnamed_stop > kStopNamed) tell_stop("the operator");
 }
 
 /// What changed about a driver, for those who look later. One that is tried again and again, and is
@@ -438,6 +446,7 @@ void Robot::tick(Time now, base::WallTime wall, base::Duration lateness) noexcep
     r.clock.begin(now, wall, lateness);
     r.take_estop(now);
     r.take_commands();
+    r.name_stop(now);
     r.take_measurements();
     r.look_around();
     r.watch_estimate();

@@ -86,13 +86,25 @@ TEST_F(AccessApi, TheDocumentAndTheTableSayTheSame) {
   EXPECT_EQ(held, written);
 }
 
-TEST_F(AccessApi, AnyoneMayStop) {
+TEST_F(AccessApi, AnyoneMayStopAndItIsToldWhoDid) {
+  const auto stopped_by = [this](const std::string& words) {
+    until(
+        [&] {
+          const Json items = as("viewer", "GET", "/events").body["items"];
+          return std::ranges::any_of(
+              items, [&](const Json& e) { return e["kind"] == "estop" && e["detail"] == words; });
+        },
+        words.c_str());
+  };
   EXPECT_EQ(as("nobody", "POST", "/vehicle/estop").status, 200u);
+  stopped_by("emergency stop by the page or a script");
   EXPECT_EQ(as("viewer", "GET", "/vehicle").body["estop"], true);
   EXPECT_EQ(as("nobody", "POST", "/vehicle/estop/reset").status, 401u);
   EXPECT_EQ(as("viewer", "POST", "/vehicle/estop/reset").status, 403u);
   EXPECT_EQ(as("operator", "POST", "/control/take").status, 200u);
   EXPECT_EQ(as("operator", "POST", "/vehicle/estop/reset").status, 200u);
+  EXPECT_EQ(as("viewer", "POST", "/vehicle/estop").status, 200u);
+  stopped_by("emergency stop by viewer");
 }
 
 TEST_F(AccessApi, LogInGivesACookieThatLogOutEnds) {

@@ -85,6 +85,7 @@ const JOINED: readonly string[] = [
   'emergency stop| by |the operator',
   'emergency stop| by |the button at the base',
   'emergency stop| by |the bumper',
+  'emergency stop| by',
   'paused |by the radio',
   'stopped |by the radio',
   'home| missed by',

@@ -207,8 +207,8 @@ Handler put_parameter(const ContextPtr& context) {
     }
     const bool later = !p->at_once;
     const bool lays_way = robot::lays_way(p->section, p->info.name);
-    context->commands.run(robot::SetParameter{name, *value, "the page or a script", later},
-                          validity, base::steady_now(),
+    context->commands.run(robot::SetParameter{name, *value, words_for(call->who), later}, validity,
+                          base::steady_now(),
                           [context, call, name, value = *value, later, lays_way,
                            by_way = p->by_way](const base::Result<void>& result) {
                             if (!result) return call->respond(problem(result.error()));

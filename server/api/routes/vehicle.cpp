@@ -66,7 +66,7 @@ Handler arm(const ContextPtr& context) {
 /// program.
 void estop(const ContextPtr& context, const CallPtr& call) {
   context->commands.run(
-      robot::Estop{"the page or a script"}, base::Time::max(), base::steady_now(),
+      robot::Estop{words_for(call->who)}, base::Time::max(), base::steady_now(),
       [context, call](base::Result<void> result) {
         if (!result) return call->respond(problem(result.error()));
         context->when_estop_kept([context, call] {

@@ -1,5 +1,6 @@
 // Who drives, and what a loss does: e-stop > radio > teleoperation > autonomy.
 
+#include <algorithm>
 #include <limits>
 
 #include "field.hpp"
@@ -57,7 +58,53 @@ TEST(Arbiter, AStopThatWasAskedForGoesOutBetweenTwoTicks) {
   EXPECT_TRUE(f.state()->estop);
   EXPECT_FALSE(f.state()->armed);
   EXPECT_EQ(f.execution(), ExecutionState::Paused);
-  EXPECT_TRUE(f.has_event("estop"));
+  const auto told = std::ranges::find(f.events, "estop", &base::Event::kind);
+  ASSERT_NE(told, f.events.end());
+  EXPECT_EQ(told->detail, "emergency stop by a script");
+  EXPECT_EQ(std::ranges::count(f.events, "estop", &base::Event::kind), 1);
+}
+
+/// So many stops wait that no more find room, and none of them is the emergency stop.
+void flood(Field& f) {
+  while (f.robot.request(Drive{{}, false}, base::Time::max(), {})) {
+  }
+  while (f.robot.request(SetMode{Mode::Hold}, base::Time::max(), {})) {
+  }
+  ASSERT_FALSE(f.robot.request(Estop{"anna"}, base::Time::max(), {}));
+}
+
+std::vector<std::string> stops_told(const Field& f) {
+  std::vector<std::string> out;
+  for (const base::Event& e : f.events) {
+    if (e.kind == "estop" || e.kind == "estop_reset") out.push_back(e.detail);
+  }
+  return out;
+}
+
+using Words = std::vector<std::string>;
+
+TEST(Arbiter, AStopWhoseCommandFoundNoRoomStopsAtOnceAndIsTold) {
+  Field f;
+  f.drive_mission();
+  f.run(1.0);
+  flood(f);
+  f.tick();
+  EXPECT_TRUE(f.state()->estop);
+  EXPECT_EQ(stops_told(f), Words{});
+  f.run(0.3);
+  EXPECT_EQ(stops_told(f), Words{"emergency stop by the operator"});
+}
+
+TEST(Arbiter, AResetTellsTheStopBeforeIt) {
+  Field f;
+  f.drive_mission();
+  f.run(1.0);
+  flood(f);
+  f.tick();
+  ASSERT_TRUE(f.ask(ResetEstop{}));
+  f.run(0.5);
+  EXPECT_EQ(stops_told(f),
+            (Words{"emergency stop by the operator", "emergency stop released; disarmed"}));
 }
 
 TEST(Arbiter, ALeverBetweenItsDetentsKeepsItsLastPosition) {

@@ -20,6 +20,7 @@ export const robot_events = {
   rb_ev_estop_button: 'emergency stop by the button at the base',
   rb_ev_estop_bumper: 'emergency stop by the bumper',
   rb_ev_estop_bumper_at: 'emergency stop by the bumper ({place})',
+  rb_ev_estop_by: 'emergency stop by {who}',
   rb_ev_estop_why: 'emergency stop: {why}',
   rb_ev_estop_released: 'emergency stop released',
   rb_ev_estop_released_disarmed: 'emergency stop released; disarmed',

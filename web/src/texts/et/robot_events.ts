@@ -18,6 +18,7 @@ export const robot_events = {
   rb_ev_estop_button: 'hädaseis sõiduki nupust',
   rb_ev_estop_bumper: 'hädaseis kaitserauast',
   rb_ev_estop_bumper_at: 'hädaseis kaitserauast ({place})',
+  rb_ev_estop_by: 'hädaseis: {who}',
   rb_ev_estop_why: 'hädaseis: {why}',
   rb_ev_estop_released: 'hädaseis vabastatud',
   rb_ev_estop_released_disarmed: 'hädaseis vabastatud; deaktiveeritud',

@@ -18,6 +18,7 @@ export const robot_events = {
   rb_ev_estop_button: 'hätäseis ajoneuvon painikkeesta',
   rb_ev_estop_bumper: 'hätäseis puskurista',
   rb_ev_estop_bumper_at: 'hätäseis puskurista ({place})',
+  rb_ev_estop_by: 'hätäseis: {who}',
   rb_ev_estop_why: 'hätäseis: {why}',
   rb_ev_estop_released: 'hätäseis vapautettu',
   rb_ev_estop_released_disarmed: 'hätäseis vapautettu; passivoitu',

@@ -19,6 +19,7 @@ export const robot_events = {
   rb_ev_estop_button: 'arresto d’emergenza dal pulsante sul veicolo',
   rb_ev_estop_bumper: 'arresto d’emergenza dal paraurti',
   rb_ev_estop_bumper_at: 'arresto d’emergenza dal paraurti ({place})',
+  rb_ev_estop_by: 'arresto d’emergenza: {who}',
   rb_ev_estop_why: 'arresto d’emergenza: {why}',
   rb_ev_estop_released: 'arresto d’emergenza sbloccato',
   rb_ev_estop_released_disarmed: 'arresto d’emergenza sbloccato; disarmato',

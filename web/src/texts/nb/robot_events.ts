@@ -18,6 +18,7 @@ export const robot_events = {
   rb_ev_estop_button: 'nødstopp fra knappen på kjøretøyet',
   rb_ev_estop_bumper: 'nødstopp fra støtfangeren',
   rb_ev_estop_bumper_at: 'nødstopp fra støtfangeren ({place})',
+  rb_ev_estop_by: 'nødstopp: {who}',
   rb_ev_estop_why: 'nødstopp: {why}',
   rb_ev_estop_released: 'nødstopp opphevet',
   rb_ev_estop_released_disarmed: 'nødstopp opphevet; deaktivert',
