@@ -33,8 +33,9 @@ double plane_m(const Pose& pose, Vec2 at) {
 
 class Finder {
  public:
-  Finder(const Pose& pose, const Body& body, double reach_m)
-      : pose_(pose), body_(body), outline_(placed(body, pose)) {
+  enum class Leaves { Give, Count };
+  Finder(const Pose& pose, const Body& body, double reach_m, Leaves leaves = Leaves::Give)
+      : pose_(pose), body_(body), leaves_(leaves), outline_(placed(body, pose)) {
     out_.clearance_m = reach_m;
   }
 
@@ -54,7 +55,7 @@ class Finder {
     const bool soft = shape.density_pm > 0.0F;
     const double room_m = distance_m(outline_, section);
     if (room_m <= 0.0) touch({static_cast<int>(shape.thing), soft, shape.moving});
-    if (!soft) nearer(room_m, static_cast<int>(shape.thing), at);
+    if (!soft || leaves_ == Leaves::Count) nearer(room_m, static_cast<int>(shape.thing), at);
   }
 
   void see(const Drop& drop) {
@@ -87,6 +88,7 @@ class Finder {
 
   const Pose& pose_;
   const Body& body_;
+  const Leaves leaves_;
   const std::vector<Vec2> outline_;
   const double half_m_ = half_m();
   Contact out_;
@@ -109,6 +111,15 @@ Contact contact(const Scene& scene, const Moment& moment, const Pose& pose, cons
              [&](const Shape& shape) { finder.see(shape); });
   for (const Drop& drop : scene.terrain().drops()) finder.see(drop);
   return finder.result();
+}
+
+double room_m(const Scene& scene, const Moment& moment, const Pose& pose, const Body& body,
+              int thing, double reach_m) {
+  Finder finder(pose, body, reach_m, Finder::Leaves::Count);
+  scene.near({pose.x_m, pose.y_m}, finder.half_m() + reach_m, moment, [&](const Shape& shape) {
+    if (static_cast<int>(shape.thing) == thing) finder.see(shape);
+  });
+  return finder.result().clearance_m;
 }
 
 std::vector<Witness::Seen> Witness::step(const Scene& scene, const Moment& moment, const Pose& pose,

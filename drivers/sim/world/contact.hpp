@@ -40,6 +40,10 @@ struct Contact {
 Contact contact(const Scene& scene, const Moment& moment, const Pose& pose, const Body& body,
                 double reach_m = 3.0);
 
+/// To one thing, as clearance_m, its leaves as well. At most reach_m.
+double room_m(const Scene& scene, const Moment& moment, const Pose& pose, const Body& body,
+              int thing, double reach_m);
+
 /// Follows a drive and counts. A thing counts again once it was left by 5 cm.
 class Witness {
  public:

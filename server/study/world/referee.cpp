@@ -22,8 +22,7 @@ constexpr double kSightEvery_s = 0.09;
 constexpr double kUnbroken_s = 1.0;
 constexpr double kAfterwards_s = 1.0;
 constexpr double kAnew_m = 0.05;
-constexpr double kMarch_m = 1.0;
-constexpr double kMarchStep_m = 0.01;
+constexpr double kRoomMost_m = 1.0;  // what is farther is told so
 constexpr double kStandsFor_s = 0.3;
 constexpr double kOverIt_m = 0.1;       // over what the guard lets pass above
 constexpr double kUnderIt_m = 0.02;     // what is lower is ground to it
@@ -449,22 +448,16 @@ std::string Referee::cause_of(const base::Obstacle& o, const world::Pose& there,
   return std::string(word_of(last.cause));
 }
 
-/// In plan, between the outline and a thing; to a centimetre. Of what the guard counts, so also of
+/// In plan, between the outline and a thing. Of what the guard counts, so also of leaves and of
 /// what the body would pass beneath.
 double Referee::room_m(int thing) const {
-  const world::Pose pose = around_.pose_at(around_.now_s());
   world::Body counts = around_.witness().body();
   counts.height_m = pass_below_m_ + kOverIt_m;
   counts.clearance_m = kUnderIt_m;
   world::Moment moment;
   around_.scene().move_to(moment, around_.now_s());
-  double room_m = 0.0;
-  for (; room_m < kMarch_m; room_m += kMarchStep_m) {
-    const auto met = world::contact(around_.scene(), moment, pose, grown(counts, room_m), 0.01);
-    const auto it = std::ranges::find(met.touches, thing, &world::Touch::thing);
-    if (it != met.touches.end()) break;
-  }
-  return room_m;
+  return world::room_m(around_.scene(), moment, around_.pose_at(around_.now_s()), counts, thing,
+                       kRoomMost_m);
 }
 
 std::optional<double> Referee::nearest_rad() const {

@@ -13,12 +13,17 @@ namespace {
 
 using nlohmann::ordered_json;
 
+// The room that a robot that has stopped shall have.
+constexpr double kStandsLeast_m = 0.05;
+constexpr double kStandsMost_m = 0.40;
+
 struct Sums {
   std::size_t worlds = 0;
   std::size_t failed = 0;
   double km = 0.0;
   std::size_t ours = 0, crossed = 0, late = 0, beside = 0, unseen = 0, standing = 0, brushes = 0;
   std::size_t stops = 0, needless = 0, blind = 0, slows = 0, detours = 0;
+  std::size_t near = 0, far = 0;  // of the stands
   std::vector<double> stands;
 
   void add(const WorldRun& run) {
@@ -43,7 +48,10 @@ struct Sums {
       }
       ++stops;
       needless += s.needless ? 1 : 0;
-      if (s.stands_m) stands.push_back(*s.stands_m);
+      if (!s.stands_m) continue;
+      stands.push_back(*s.stands_m);
+      near += *s.stands_m < kStandsLeast_m ? 1 : 0;
+      far += *s.stands_m > kStandsMost_m ? 1 : 0;
     }
   }
 };
@@ -61,10 +69,10 @@ std::string row_of(const std::string& name, const Sums& s) {
   std::snprintf(
       text, sizeof text,
       "%-24s %6zu %8.3f %5zu %7zu %5zu %6zu %7zu %9zu %8zu %6zu %9zu %7.2f %6zu  %.2f/%.2f/%.2f "
-      "%6zu %8zu\n",
+      "%6zu %5zu %4zu %6zu %8zu\n",
       name.c_str(), s.worlds, s.km, s.ours, s.crossed, s.late, s.beside, s.unseen, s.standing,
       s.brushes, s.stops, s.needless, s.km > 0.0 ? static_cast<double>(s.needless) / s.km : 0.0,
-      s.blind, least, mean, most, s.slows, s.detours);
+      s.blind, least, mean, most, s.stands.size(), s.near, s.far, s.slows, s.detours);
   return text;
 }
 
@@ -130,7 +138,7 @@ std::string to_table(const std::vector<WorldRun>& runs) {
       "                         worlds       km  ours crossed  late beside  unseen  standing  "
       "brushes  "
       "stops  "
-      "needless  per km  blind  stands m       slows  detours\n";
+      "needless  per km  blind  stands m           of  near  far  slows  detours\n";
   for (const auto& [name, sums] : rows) out += row_of(name.substr(2), sums);
   out += row_of("all", all);
   if (all.failed > 0) out += std::to_string(all.failed) + " could not begin\n";

@@ -38,6 +38,27 @@ TEST(Contact, TellsTheRoomToAPoleExactly) {
   EXPECT_EQ(at(scene, {2, 0}).clearance_m, 0.0) << "a pole under the middle of it";
 }
 
+//  [body]      o    off its corner, and another one nearer
+TEST(Contact, TellsTheRoomToOneThingOfSeveral) {
+  const Scene scene(world_of({pole({0.8, 0.75}, 0.1), pole({0.7, 0}, 0.1), pole({9, 0}, 0.1)}));
+  const Pose pose;
+  const auto to = [&](int thing) { return room_m(scene, scene.at(0.0), pose, kBody, thing, 1.0); };
+  EXPECT_NEAR(to(0), std::hypot(0.3, 0.4) - 0.1, 1e-12);
+  EXPECT_NEAR(to(1), 0.1, 1e-12);
+  EXPECT_EQ(to(2), 1.0);
+}
+
+TEST(Contact, TellsTheRoomToABushByItsLeaves) {
+  Thing bush = thing(Kind::Bush, {{2, 0}});
+  bush.radius_m = 0.5;
+  bush.height_m = 0.8;
+  const Scene scene(world_of({bush}));
+  const double room = room_m(scene, scene.at(0.0), Pose{}, kBody, 0, 3.0);
+  EXPECT_GT(room, 0.95);
+  EXPECT_LT(room, 1.25);
+  EXPECT_LT(room, at(scene, {0, 0}).clearance_m);
+}
+
 TEST(Contact, ALowStonePassesUnderAndABarOverTheBody) {
   Thing bar = thing(Kind::Bar, {{0, -2}, {0, 2}});
   bar.bottom_m = 0.39;

@@ -2,6 +2,7 @@
 // referee counts.
 
 #include <map>
+#include <sstream>
 
 #include <gtest/gtest.h>
 
@@ -349,6 +350,27 @@ TEST(WorldRunTest, WhoIsForeseenToWalkIntoTheWayIsNotTouched) {
   ASSERT_TRUE(run) << run.error().detail;
   EXPECT_TRUE(run->touches.empty());
   EXPECT_GT(run->driven_m, 4.0);  // on its way
+}
+
+//   The room is to be 0.05 to 0.40 m: what stands at either end of that is right.
+TEST(WorldReport, CountsWhoStandsTooNearAndTooFar) {
+  WorldRun run;
+  for (const double room_m : {0.049, 0.05, 0.3, 0.4, 0.401, 1.0}) {
+    StopSeen stop;
+    stop.cause = "thing";
+    stop.stands_m = room_m;
+    run.stops.push_back(stop);
+  }
+  const std::string table = to_table({run});
+  const std::string all = table.substr(table.rfind("\nall"));
+  std::istringstream words(all.substr(all.find("0.05/")));
+  std::string rooms;
+  int of = 0, near = 0, far = 0;
+  words >> rooms >> of >> near >> far;
+  EXPECT_EQ(rooms, "0.05/0.37/1.00");
+  EXPECT_EQ(of, 6);
+  EXPECT_EQ(near, 1);
+  EXPECT_EQ(far, 2);
 }
 
 TEST(WorldRunTest, TheSameNumberDrivesTheSame) {
