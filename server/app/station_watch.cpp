@@ -11,7 +11,7 @@ constexpr base::Duration kLookAtNames = std::chrono::seconds(5);
 
 bool anything(const nav::Learned& l) {
   return l.odometry_scale || l.gyro_bias_radps || l.delay_s || l.braking_mps2 ||
-         l.acceleration_mps2 || l.yaw_scale || l.pull_1pm || l.forgotten;
+         l.acceleration_mps2 || l.yaw_scale || l.pull_1pm || l.pivot_m || l.forgotten;
 }
 
 }  // namespace

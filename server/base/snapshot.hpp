@@ -67,6 +67,13 @@ struct Ellipse {
   double major_yaw_rad = 0.0;  ///< direction of the larger axis; it has no front: (−π/2, π/2]
 };
 
+/// Velocity along the body's axes. What seems to be crab is none of it: two antennas that are
+/// mounted askew look the same.
+struct OverGround {
+  double ahead_mps = 0.0;
+  double left_mps = 0.0;
+};
+
 /// The estimator's answer.
 struct Pose {
   Time stamp;
@@ -77,10 +84,12 @@ struct Pose {
   std::optional<double> speed_mps;  ///< along the body's forward axis, signed; over ground without
                                     ///< odometry, then never negative
   std::optional<double> yaw_rate_radps;  ///< empty without odometry
-  double horizontal_sigma_m = 0.0;       ///< 1σ, larger axis of the ellipse
-  double yaw_sigma_rad = 0.0;            ///< 1σ of yaw_rad as that tells where it will drive
-  double heading_sigma_rad = 0.0;  ///< 1σ of yaw_rad as that tells where it points: larger where
-                                   ///< only driving showed it, and driving may go a bit aside
+  /// Of the origin by odometry and what was learned of this ground. Empty without odometry.
+  std::optional<OverGround> over_ground{};
+  double horizontal_sigma_m = 0.0;  ///< 1σ, larger axis of the ellipse
+  double yaw_sigma_rad = 0.0;       ///< 1σ of yaw_rad as that tells where it will drive
+  double heading_sigma_rad = 0.0;   ///< 1σ of yaw_rad as that tells where it points: larger where
+                                    ///< only driving showed it, and driving may go a bit aside
   Ellipse ellipse;
   std::optional<double> alt_msl_m;
   std::string
@@ -293,6 +302,7 @@ struct EstimatorHealth {
   bool compass_heard = false;
   double odometry_scale = 1.0;
   double pull_1pm = 0.0;  ///< curvature of a vehicle that is told to go straight; left positive
+  double pivot_m = 0.0;   ///< so far ahead of its origin it turns about
   /// Metres to its left for each metre ahead: it slides down a slope. Not where it points counts
   /// for its way, but where it goes.
   double side_slip = 0.0;

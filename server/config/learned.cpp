@@ -43,6 +43,7 @@ constexpr Kind kSpeedingKind{
     "acceleration_mps2", "acceleration_sigma_mps2", 0.05, 10.0, 0.02, 90.0};
 constexpr Kind kTurnKind{"yaw_scale", "yaw_scale_sigma", 0.3, 1.5, 0.005, 90.0};
 constexpr Kind kPullKind{"pull_1pm", "pull_sigma_1pm", -0.3, 0.3, 0.001, 90.0};
+constexpr Kind kPivotKind{"pivot_m", "pivot_sigma_m", -1.0, 1.0, 0.003, 90.0};
 
 std::optional<double> number(const Json& json, const char* name) {
   const auto at = json.find(name);
@@ -98,7 +99,7 @@ void put(Json& json, const Kind& kind, const LearnedValue& value, double scale, 
 /// What a person said is to be forgotten; the gyro's bias is the sensor's, not the vehicle's.
 void forget(Json& json) {
   for (const Kind& kind :
-       {kScaleKind, kDelayKind, kBrakingKind, kSpeedingKind, kTurnKind, kPullKind}) {
+       {kScaleKind, kDelayKind, kBrakingKind, kSpeedingKind, kTurnKind, kPullKind, kPivotKind}) {
     json.erase(kind.name);
     json.erase(kind.sigma_name);
     json.erase(std::string(kind.name) + "_day");
@@ -120,6 +121,7 @@ Json merged(Json json, const nav::Learned& learned, const std::string& vehicle,
   if (learned.acceleration_mps2) put(json, kSpeedingKind, *learned.acceleration_mps2, 1.0, days);
   if (learned.yaw_scale) put(json, kTurnKind, *learned.yaw_scale, 1.0, days);
   if (learned.pull_1pm) put(json, kPullKind, *learned.pull_1pm, 1.0, days);
+  if (learned.pivot_m) put(json, kPivotKind, *learned.pivot_m, 1.0, days);
   return json;
 }
 
@@ -161,6 +163,7 @@ nav::Learned learned_from(std::string_view text, const std::string& vehicle, bas
   out.acceleration_mps2 = kept(kSpeedingKind);
   out.yaw_scale = kept(kTurnKind);
   out.pull_1pm = kept(kPullKind);
+  out.pivot_m = kept(kPivotKind);
   if (const auto bias = kept(kBiasKind)) {
     out.gyro_bias_radps =
         LearnedValue{base::rad_from_deg(bias->value), base::rad_from_deg(bias->sigma)};

@@ -130,7 +130,7 @@ std::optional<double> antennas_offset_by(const base::CalibrationState& done) noe
 
 bool KeptCalibration::anything(const nav::Learned& l) noexcept {
   return l.delay_s || l.braking_mps2 || l.acceleration_mps2 || l.odometry_scale || l.yaw_scale ||
-         l.pull_1pm;
+         l.pull_1pm || l.pivot_m;
 }
 
 void KeptCalibration::keep(const nav::Learned& learned, base::Time now) noexcept {

@@ -138,6 +138,7 @@ Json estimator_json(const base::Snapshot& s) {
            compass ? rounded(-base::deg_from_rad(e.compass_bias_rad), 1e2) : Json(nullptr)},
           {"odometry_scale", s.pose ? rounded(e.odometry_scale, 1e4) : Json(nullptr)},
           {"pull_1pm", s.pose ? rounded(e.pull_1pm, 1e4) : Json(nullptr)},
+          {"pivot_m", s.pose ? rounded(e.pivot_m, 1e3) : Json(nullptr)},
           {"side_slip", s.pose ? rounded(e.side_slip, 1e4) : Json(nullptr)},
           {"gnss_offset", e.gnss_offset ? metres_json(*e.gnss_offset) : Json(nullptr)},
           {"innovations", innovations_json(e)},

@@ -36,6 +36,7 @@ const double kBiasNoisePivot_rad = rad_from_deg(6.0);
 constexpr double kScaleNoise = 0.006;
 constexpr double kYawScaleNoise = 0.02;
 constexpr double kPullNoise_1pm = 0.004;
+constexpr double kPivotNoise_m = 0.002;  // per √rad
 // The way after which crab and slide are forgotten.
 constexpr double kCrabFades_m = 100.0;
 constexpr double kSlideFades_m = 60.0;
@@ -119,6 +120,7 @@ void add_motion_noise(Belief& b, const Travel& t, const Slip& slip, double turne
   b.P(kScale, kScale) += scale * scale * std::min(speed, speed * speed) * t.dt_s;
   add_noise(b, kYawScale, kYawScaleNoise * std::min(1.0, turn_rate), t.dt_s);
   add_noise(b, kPull, kPullNoise_1pm * std::min(1.0, speed), t.dt_s);
+  if (b.P(kPivot, kPivot) > 0.0) add_noise(b, kPivot, kPivotNoise_m, std::abs(turned_rad));
 }
 
 }  // namespace
@@ -128,6 +130,10 @@ Eigen::Vector2d way_per_m(const StateVector& x, double yaw_rad, double way) noex
   const double s = std::sin(yaw_rad);
   return {way * (x(kScale) * c - x(kCrab) * s) + x(kSlideE),
           way * (x(kScale) * s + x(kCrab) * c) + x(kSlideN)};
+}
+
+Eigen::Vector2d way_per_rad(const StateVector& x, double yaw_rad) noexcept {
+  return {x(kPivot) * std::sin(yaw_rad), -x(kPivot) * std::cos(yaw_rad)};
 }
 
 void predict(Belief& b, const Travel& t, const Slip& slip, const Drift& drift,
@@ -145,7 +151,8 @@ void predict(Belief& b, const Travel& t, const Slip& slip, const Drift& drift,
   const double middle_rad = b.x(kYaw) + 0.5 * turned_rad;
   const double way_m = std::abs(t.ahead_m);
   const double back = t.ahead_m < 0.0 ? -1.0 : 1.0;
-  const Eigen::Vector2d moved = way_m * way_per_m(b.x, middle_rad, back);
+  const Eigen::Vector2d per_rad = way_per_rad(b.x, middle_rad);
+  const Eigen::Vector2d moved = way_m * way_per_m(b.x, middle_rad, back) + turned_rad * per_rad;
   const double c = t.ahead_m * std::cos(middle_rad);
   const double s = t.ahead_m * std::sin(middle_rad);
   // What of the way turns with the robot.
@@ -154,14 +161,16 @@ void predict(Belief& b, const Travel& t, const Slip& slip, const Drift& drift,
   F(kEast, kYaw) = -own_north;
   F(kNorth, kYaw) = own_east;
   for (const int i : {kGyroBias, kYawScale, kPull}) {
-    F(kEast, i) = -0.5 * own_north * F(kYaw, i);
-    F(kNorth, i) = 0.5 * own_east * F(kYaw, i);
+    F(kEast, i) = (per_rad.x() - 0.5 * own_north) * F(kYaw, i);
+    F(kNorth, i) = (per_rad.y() + 0.5 * own_east) * F(kYaw, i);
   }
   F(kEast, kScale) = c;
   F(kNorth, kScale) = s;
   F(kEast, kCrab) = -s;
   F(kNorth, kCrab) = c;
   F(kEast, kSlideE) = F(kNorth, kSlideN) = way_m;
+  F(kEast, kPivot) = turned_rad * std::sin(middle_rad);
+  F(kNorth, kPivot) = -turned_rad * std::cos(middle_rad);
 
   b.x(kEast) += moved.x();
   b.x(kNorth) += moved.y();
@@ -221,6 +230,7 @@ bool update(Belief& b, const Observation<M>& o, StateVector& change, double& nis
   b.x(kPull) = std::clamp(b.x(kPull), -0.3, 0.3);
   b.x(kCrab) = std::clamp(b.x(kCrab), -0.3, 0.3);
   for (const int i : {kSlideE, kSlideN}) b.x(i) = std::clamp(b.x(i), -0.4, 0.4);
+  b.x(kPivot) = std::clamp(b.x(kPivot), -1.0, 1.0);
   change = b.x - before;
   change(kYaw) = base::wrap_rad(change(kYaw));
 

@@ -3,13 +3,13 @@
 //
 //   x = [east_m, north_m, yaw_rad, gyro_bias_radps, compass_bias_rad, compass_left_radpa,
 //        compass_right_radpa, odometry_scale, yaw_scale, pull_1pm, drift_east_m, drift_north_m,
-//        crab, slide_east, slide_north]ᵀ ,
-//   P is 15×15 in that order.
+//        crab, slide_east, slide_north, pivot_m]ᵀ ,
+//   P is 16×16 in that order.
 //
-// The position is the centre of rotation in the local frame. A gyro shows w + gyro_bias. A compass
-// shows yaw + compass_bias + compass_left·I_left + compass_right·I_right (motor currents, A). The
-// tracks say v_odo and w_odo; the ground sees v = odometry_scale·v_odo and
-// w = yaw_scale·w_odo + pull·v_odo: a skid-steer turns less than its tracks claim, and bends to one
+// The position is that of the body's origin in the local frame. A gyro shows w + gyro_bias. A
+// compass shows yaw + compass_bias + compass_left·I_left + compass_right·I_right (motor currents,
+// A). The tracks say v_odo and w_odo; the ground sees v = odometry_scale·v_odo and w =
+// yaw_scale·w_odo + pull·v_odo: a skid-steer turns less than its tracks claim, and bends to one
 // side where one track grips better. A receiver shows position + drift, drift being a slow
 // Gauss-Markov process that vanishes with RTK fixed.
 //
@@ -18,6 +18,10 @@
 // points: downhill. On one straight line a heading, the crab and the slide across it cannot be told
 // apart, and need not be; the first turn parts the slide from the other two. Both fade with the way
 // driven, for the ground changes.
+//
+// Nor does a skid-steer turn about its origin: the centre of its turns lies `pivot` metres ahead of
+// that, by how its load lies, and for each radian to the left the origin moves as far to the right.
+// Positions cannot tell it from an antenna that is mounted elsewhere than they were told.
 //
 // The yaw is the gyro's integral where there is one: Pentzer 2014 found 0.42 m of error over 40 m
 // for the best that tracks can tell. Without a gyro it is the tracks'.
@@ -44,6 +48,7 @@ enum StateIndex : int {
   kCrab,
   kSlideE,
   kSlideN,
+  kPivot,
   kStates
 };
 
@@ -82,6 +87,9 @@ struct Slip {
 void predict(Belief& b, const Travel& travel, const Slip& slip, const Drift& drift,
              bool standing) noexcept;
 
+/// The way of one radian to the left, of the turn alone, in ENU.
+Eigen::Vector2d way_per_rad(const StateVector& x, double yaw_rad) noexcept;
+
 /// The way of one metre forwards (`way` 1) or backwards (−1) of the tracks, in ENU.
 Eigen::Vector2d way_per_m(const StateVector& x, double yaw_rad, double way) noexcept;
 
@@ -113,7 +121,8 @@ struct Observation {
 };
 
 /// Right for any gain, symmetrised, yaw wrapped, scales bounded to [0.5, 1.2] and [0.3, 1.5], pull
-/// to ±0.3 /m, the gyro's bias to ±0.2 rad/s, crab to ±0.3, the slide to ±0.4 each way.
+/// to ±0.3 /m, the gyro's bias to ±0.2 rad/s, crab to ±0.3, the slide to ±0.4 each way, the pivot
+/// to ±1 m.
 /// @param change what was added to x (for past states). @param nis y'S⁻¹y, NaN where not finite.
 /// @return false: outside the gate, or not finite; nothing changed.
 template <int M>

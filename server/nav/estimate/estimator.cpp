@@ -22,6 +22,9 @@ constexpr base::Duration kFuture = milliseconds(50);
 constexpr double kCoastSpeed_mps = 0.15;
 constexpr double kCoastAccel_mps2 = 0.5;
 constexpr double kBlindSpeed_mps = 1.0;
+// So much of what seems to be a slide, and a centre of turns so far off, is taken for the ground's.
+constexpr double kSlideBelieved = 0.12;
+constexpr double kPivotBelieved_m = 0.15;
 // A fixed solution errs slowly too, by reflections: what does not average out.
 constexpr double kFixedWanders_m = 0.006;
 
@@ -41,6 +44,7 @@ Estimator::Estimator(base::Setting<EstimateParams> setting) : params_(std::move(
   for (const StateIndex i : {kSlideE, kSlideN}) reset_state(belief_, i, 0.0, kSlideAtFirst);
   reset_state(belief_, kYawScale, params.yaw_scale, params.yaw_scale_sigma);
   reset_state(belief_, kPull, 0.0, params.pull_sigma_1pm);
+  reset_state(belief_, kPivot, 0.0, params.pivot_sigma_m);
   if (params.has_map()) {
     frame_.emplace(1, base::LatLon{params.map_lat, params.map_lon});
     next_frame_id_ = 2'000'000'000;  // of a first fix that lies elsewhere
@@ -58,6 +62,7 @@ void Estimator::recall(const Learned& learned) noexcept {
   take(learned.gyro_bias_radps, kGyroBias, kGyroBiasRecalled_radps, -0.2, 0.2);
   take(learned.yaw_scale, kYawScale, kYawScaleRecalled, 0.3, 1.5);
   take(learned.pull_1pm, kPull, kPullRecalled_1pm, -0.3, 0.3);
+  take(learned.pivot_m, kPivot, kPivotRecalled_m, -1.0, 1.0);
 }
 
 void Estimator::adopt(const Learned& learned) noexcept {
@@ -74,6 +79,7 @@ void Estimator::forget_vehicle() noexcept {
   reset_state(belief_, kScale, 1.0, params.odometry_scale_sigma);
   reset_state(belief_, kYawScale, params.yaw_scale, params.yaw_scale_sigma);
   reset_state(belief_, kPull, 0.0, params.pull_sigma_1pm);
+  reset_state(belief_, kPivot, 0.0, params.pivot_sigma_m);
 }
 
 Learned Estimator::learned() const noexcept {
@@ -85,6 +91,9 @@ Learned Estimator::learned() const noexcept {
   };
   if (has_moved_ && params_->odometry_scale_sigma > kScaleLearned) {
     out.odometry_scale = tell(kScale, kScaleLearned);
+  }
+  if (has_moved_ && params_->pivot_sigma_m > kPivotLearned_m) {
+    out.pivot_m = tell(kPivot, kPivotLearned_m);
   }
   if (last_inertial_) out.gyro_bias_radps = tell(kGyroBias, kGyroBiasLearned_radps);
   return out;
@@ -165,6 +174,22 @@ Coast Estimator::coast(Time now) const noexcept {
   return c;
 }
 
+/// A receiver that runs away is answered by a slide, too: what it makes of one is bounded, and
+/// where another sense speaks against it, nothing is made of it.
+base::OverGround Estimator::over_ground(double speed_mps, double yaw_rate_radps) const noexcept {
+  const double c = std::cos(belief_.x(kYaw));
+  const double s = std::sin(belief_.x(kYaw));
+  const double e = belief_.x(kSlideE);
+  const double n = belief_.x(kSlideN);
+  const bool out = votes_.out(base::Sense::Position) || votes_.out(base::Sense::Velocity);
+  const double trust = heading_known_ && !out ? 1.0 - suspected_course() : 0.0;
+  const double most = kSlideBelieved * trust;
+  const double way_mps = std::abs(tracks_.linear_mps);
+  const double pivot_m = std::clamp(belief_.x(kPivot), -kPivotBelieved_m, kPivotBelieved_m);
+  return {speed_mps + way_mps * std::clamp(c * e + s * n, -most, most),
+          way_mps * std::clamp(c * n - s * e, -most, most) - pivot_m * yaw_rate_radps};
+}
+
 std::optional<base::Pose> Estimator::pose(Time now) const {
   if (!located_ || !frame_ || !filter_at_) return std::nullopt;
   base::Pose p;
@@ -189,11 +214,13 @@ std::optional<base::Pose> Estimator::pose(Time now) const {
     const double middle_rad = p.yaw_rad + 0.5 * yaw_rate_radps * dt_s;
     const double back = tracks_.linear_mps < 0.0 ? -1.0 : 1.0;
     const Eigen::Vector2d way =
-        std::abs(tracks_.linear_mps) * dt_s * way_per_m(belief_.x, middle_rad, back);
+        std::abs(tracks_.linear_mps) * dt_s * way_per_m(belief_.x, middle_rad, back) +
+        yaw_rate_radps * dt_s * way_per_rad(belief_.x, middle_rad);
     p.at = p.at + base::EnuPoint{way.x(), way.y()};
     p.yaw_rad = base::wrap_rad(p.yaw_rad + yaw_rate_radps * dt_s);
     p.speed_mps = speed_mps;
     p.yaw_rate_radps = yaw_rate_radps;
+    p.over_ground = over_ground(speed_mps, yaw_rate_radps);
   } else if (velocity) {
     p.speed_mps = std::hypot(velocity_->east_mps, velocity_->north_mps);
   }

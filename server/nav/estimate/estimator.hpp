@@ -192,7 +192,7 @@ class Estimator {
   /// their way, on a slope by more.
   static constexpr double kAside_rad = 0.08;
   static constexpr double kAsidePerGrade_rad = 0.1;
-  struct Arm {  ///< from the centre of rotation to the antenna, in ENU
+  struct Arm {  ///< from the body's origin to the antenna, in ENU
     double east_m, north_m;
   };
 
@@ -249,6 +249,7 @@ class Estimator {
   void reset_position(base::EnuPoint at, const GnssQuality& q) noexcept;
   base::EnuPoint local(const base::GnssFix& fix) const noexcept;
   Arm arm(double yaw_rad) const noexcept;
+  base::OverGround over_ground(double speed_mps, double yaw_rate_radps) const noexcept;
   template <class M>
   Time taken_at(const M& m) const noexcept;
 

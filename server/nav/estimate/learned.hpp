@@ -15,6 +15,7 @@ struct LearnedValue {
 struct Learned {
   std::optional<LearnedValue> odometry_scale;   ///< true way over that of the tracks
   std::optional<LearnedValue> gyro_bias_radps;  ///< what the gyro shows at rest
+  std::optional<LearnedValue> pivot_m{};        ///< ahead of the origin it turns about that
   // Not the estimator's: nav/identify.
   std::optional<LearnedValue> delay_s{};       ///< from a command to its motion
   std::optional<LearnedValue> braking_mps2{};  ///< it brakes no harder
@@ -28,10 +29,12 @@ struct Learned {
 /// A value that is no more certain than this was not learned, and is not told.
 inline constexpr double kScaleLearned = 0.02;
 inline constexpr double kGyroBiasLearned_radps = 0.0015;  // 0.09 deg/s
+inline constexpr double kPivotLearned_m = 0.01;
 /// One that is recalled is less certain: told again only once it was learned again.
 inline constexpr double kScaleRecalled = 0.03;
 inline constexpr double kGyroBiasRecalled_radps = 0.0025;  // 0.14 deg/s
 inline constexpr double kYawScaleRecalled = 0.02;
 inline constexpr double kPullRecalled_1pm = 0.005;
+inline constexpr double kPivotRecalled_m = 0.015;
 
 }  // namespace roverd::nav

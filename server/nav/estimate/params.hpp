@@ -30,6 +30,7 @@ struct EstimateParams {
   double yaw_scale = 0.8;
   double yaw_scale_sigma = 0.2;
   double pull_sigma_1pm = 0.03;
+  double pivot_sigma_m = 0.05;
   double gyro_bias_sigma_dps = 0.5;
   double drift_scale = 1.0;
   int satellites_min = 6;
@@ -65,9 +66,9 @@ void compass_fields(V& v, EstimateParams& p) {
 template <class V>
 void gnss_fields(V& v, EstimateParams& p) {
   v("antenna_forward_m", p.antenna_forward_m, -5.0, 5.0,
-    base::only_disarmed("GNSS antenna ahead of the centre of rotation"));
+    base::only_disarmed("GNSS antenna ahead of the body's origin"));
   v("antenna_left_m", p.antenna_left_m, -5.0, 5.0,
-    base::only_disarmed("GNSS antenna left of the centre of rotation"));
+    base::only_disarmed("GNSS antenna left of the body's origin"));
   v("antenna_up_m", p.antenna_up_m, 0.0, 10.0,
     base::only_disarmed("GNSS antenna above the ground: it sways when the robot leans"));
   v("antenna_baseline_m", p.antenna_baseline_m, 0.1, 20.0,
@@ -105,6 +106,8 @@ void fields(V& v, EstimateParams& p) {
     "how wrong the turn rate computed from the tracks may be, as a part of one");
   v("pull_sigma_1pm", p.pull_sigma_1pm, 0.0, 0.2,
     "how much the robot may bend to one side on straight tracks");
+  v("pivot_sigma_m", p.pivot_sigma_m, 0.0, 1.0,
+    "how far before or behind its origin the robot may turn; 0: about that");
   v("gyro_bias_sigma_dps", p.gyro_bias_sigma_dps, 0.01, 10.0,
     "how much a gyro may show while the robot stands, before that was seen");
   v("contradiction_sigma", p.contradiction_sigma, 2.0, 20.0,
@@ -120,7 +123,7 @@ void fields(V& v, EstimateParams& p) {
 
 /// Of these the estimator makes what it believes at first; later it knows better by itself, so that
 /// a change acts when the program starts anew.
-inline constexpr std::array<std::string_view, 10> kBelievedAtFirst = {
+inline constexpr std::array<std::string_view, 11> kBelievedAtFirst = {
     "compass_left_deg_per_a",
     "compass_right_deg_per_a",
     "compass_current_sigma_deg_per_a",
@@ -128,6 +131,7 @@ inline constexpr std::array<std::string_view, 10> kBelievedAtFirst = {
     "yaw_scale",
     "yaw_scale_sigma",
     "pull_sigma_1pm",
+    "pivot_sigma_m",
     "gyro_bias_sigma_dps",
     "map_lat",
     "map_lon"};

@@ -278,11 +278,20 @@ void Estimator::fuse_position(const base::GnssFix& fix, const GnssQuality& q) no
   if (heading_known_) {
     // What is believed now of yaw and slip is true of the way since then as well: an antenna that
     // trails behind.
-    const double behind_e = at(kEast) - belief_.x(kEast);
-    const double behind_n = at(kNorth) - belief_.x(kNorth);
+    const double since_rad = past ? sums_.turned_rad - past->turned_rad : 0.0;
+    const double then_rad = at(kYaw);
+    const Eigen::Vector2d per_pivot{std::cos(then_rad) - std::cos(then_rad + since_rad),
+                                    std::sin(then_rad) - std::sin(then_rad + since_rad)};
+    const double whole_e = at(kEast) - belief_.x(kEast);
+    const double whole_n = at(kNorth) - belief_.x(kNorth);
+    o.H(0, kYaw) = -(to_antenna.north_m + whole_n);
+    o.H(1, kYaw) = to_antenna.east_m + whole_e;
+    o.H(0, kPivot) = -per_pivot.x();
+    o.H(1, kPivot) = -per_pivot.y();
+    // The turns' part of it is none that was driven.
+    const double behind_e = whole_e + belief_.x(kPivot) * per_pivot.x();
+    const double behind_n = whole_n + belief_.x(kPivot) * per_pivot.y();
     const double scale = belief_.x(kScale);
-    o.H(0, kYaw) = -(to_antenna.north_m + behind_n);
-    o.H(1, kYaw) = to_antenna.east_m + behind_e;
     o.H(0, kScale) = o.H(1, kCrab) = behind_e / scale;
     o.H(1, kScale) = behind_n / scale;
     o.H(0, kCrab) = -behind_n / scale;

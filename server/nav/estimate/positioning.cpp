@@ -173,6 +173,7 @@ base::EstimatorHealth Estimator::health() const noexcept {
   h.compass_bias_rad = belief_.x(kBias);
   h.odometry_scale = belief_.x(kScale);
   h.pull_1pm = belief_.x(kPull);
+  h.pivot_m = belief_.x(kPivot);
   const Eigen::Vector2d way = way_per_m(belief_.x, belief_.x(kYaw), 1.0);
   h.side_slip = std::cos(belief_.x(kYaw)) * way.y() - std::sin(belief_.x(kYaw)) * way.x();
   if (located_ && drift_.sigma_m > 0.0) {

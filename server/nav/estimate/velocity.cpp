@@ -91,8 +91,10 @@ bool Estimator::align(const base::GnssVelocity& velocity, double sigma_mps, cons
   if (heading_known_ && variance < kCoarse_rad * kCoarse_rad) return false;
   const double w = odometry.angular_radps;
   const Arm to_antenna = heading_known_ ? arm(at.x(kYaw)) : Arm{0.0, 0.0};
-  const double east = velocity.east_mps + w * to_antenna.north_m;
-  const double north = velocity.north_mps - w * to_antenna.east_m;
+  const Eigen::Vector2d turns =
+      heading_known_ ? Eigen::Vector2d(w * way_per_rad(at.x, at.x(kYaw))) : Eigen::Vector2d(0, 0);
+  const double east = velocity.east_mps + w * to_antenna.north_m - turns.x();
+  const double north = velocity.north_mps - w * to_antenna.east_m - turns.y();
   const double speed = std::hypot(east, north);
   if (speed < 3.0 * sigma_mps) return true;
   const double back = odometry.linear_mps < 0.0 ? base::kPi : 0.0;
@@ -139,7 +141,8 @@ void Estimator::fuse_vector(const base::GnssVelocity& velocity, double sigma_mps
   const double c = odometry.linear_mps * std::cos(at.x(kYaw));
   const double s = odometry.linear_mps * std::sin(at.x(kYaw));
   const Eigen::Vector2d drives =
-      tracks_mps * way_per_m(at.x, at.x(kYaw), odometry.linear_mps < 0.0 ? -1.0 : 1.0);
+      tracks_mps * way_per_m(at.x, at.x(kYaw), odometry.linear_mps < 0.0 ? -1.0 : 1.0) +
+      w * way_per_rad(at.x, at.x(kYaw));
   const Arm to_antenna = arm(at.x(kYaw));
   Observation<2> o;
   o.innovation << velocity.east_mps - (drives.x() - w * to_antenna.north_m),
@@ -151,6 +154,8 @@ void Estimator::fuse_vector(const base::GnssVelocity& velocity, double sigma_mps
   o.H(0, kCrab) = -s;
   o.H(1, kCrab) = c;
   o.H(0, kSlideE) = o.H(1, kSlideN) = tracks_mps;
+  o.H(0, kPivot) = w * std::sin(at.x(kYaw));
+  o.H(1, kPivot) = -w * std::cos(at.x(kYaw));
   // While turning, an error of the latency shows as one of the direction.
   const double turning = 0.05 * std::abs(w * v);
   o.R(0, 0) = o.R(1, 1) = sigma_mps * sigma_mps + turning * turning;

@@ -57,6 +57,7 @@ struct Odometry {
   double v_mps = 0.0;
   double yaw_rate_radps = 0.0;
   Lie3 lie{};
+  double left_mps = 0.0;  ///< aside, to its left
 };
 
 /// Along the arc of a twist. Source: the unicycle's exact integral.
@@ -65,6 +66,15 @@ inline Pose2 along(double v_mps, double yaw_rate_radps, double dt_s) noexcept {
   const double d = v_mps * dt_s;
   if (std::abs(turn) < 1e-6) return {d, 0.5 * d * turn, turn};
   return {d * std::sin(turn) / turn, d * (1.0 - std::cos(turn)) / turn, turn};
+}
+
+/// The same of a body that goes aside as well: by the middle of the turn.
+inline Pose2 along(double v_mps, double left_mps, double yaw_rate_radps, double dt_s) noexcept {
+  const Pose2 arc = along(v_mps, yaw_rate_radps, dt_s);
+  const double left_m = left_mps * dt_s;
+  const double middle_rad = 0.5 * yaw_rate_radps * dt_s;
+  return {arc.x_m - left_m * std::sin(middle_rad), arc.y_m + left_m * std::cos(middle_rad),
+          arc.yaw_rad};
 }
 
 /// A ring of 256 states, 5.1 s at 50 Hz; the oldest goes first. No allocation. A state that is not
@@ -76,7 +86,8 @@ class PoseHistory {
 
   bool push(const Odometry& o) noexcept {
     if (size_ > 0 && o.stamp <= back(0).stamp) return false;
-    if (!std::isfinite(o.pose.x_m + o.pose.y_m + o.pose.yaw_rad + o.v_mps + o.yaw_rate_radps) ||
+    if (!std::isfinite(o.pose.x_m + o.pose.y_m + o.pose.yaw_rad + o.v_mps + o.left_mps +
+                       o.yaw_rate_radps) ||
         !std::isfinite(o.lie.z_m + o.lie.roll_rad + o.lie.pitch_rad)) {
       return false;
     }
@@ -96,7 +107,8 @@ class PoseHistory {
     if (t >= back(0).stamp) {
       const double ahead_s = base::seconds(t - back(0).stamp);
       if (ahead_s > kAhead_s) return std::nullopt;
-      return back(0).pose * along(back(0).v_mps, back(0).yaw_rate_radps, ahead_s);
+      const Odometry& last = back(0);
+      return last.pose * along(last.v_mps, last.left_mps, last.yaw_rate_radps, ahead_s);
     }
     if (t < back(size_ - 1).stamp) return std::nullopt;
     const std::size_t newer = next_after(t);

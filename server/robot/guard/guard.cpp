@@ -18,8 +18,9 @@ namespace {
 using base::BodyTwist;
 using nav::sense::Limit;
 
-constexpr double kPicture_s = 0.5;    // older, and whoever makes them stands still
-constexpr double kLean_s = 0.15;      // older, and the body may lie otherwise by now
+constexpr double kPicture_s = 0.5;  // older, and whoever makes them stands still
+constexpr double kLean_s = 0.15;    // older, and the body may lie otherwise by now
+constexpr double kAside_mps = 1.0;
 constexpr double kMost_mps = 50.0;    // what is measured to be faster is none of ours: the pose
 constexpr double kMost_radps = 50.0;  // must stay where cells can be counted
 constexpr double kLeast_mps = 0.05;   // slower, and it stands
@@ -34,7 +35,7 @@ constexpr double kDockIs_m = 0.3;  // what stands within this beyond the vehicle
 constexpr double kDockLeast_mps = 0.06;
 constexpr double kFollows_m = 0.02;
 constexpr double kHis_m = 0.3;          // what stands this near to somebody who moves is he
-constexpr double kTurnsRound_m = 0.09;  // so that a way around, too, may begin with a turn
+constexpr double kTurnsRound_m = 0.07;  // so that a way around, too, may begin with a turn
 
 bool stands(const BodyTwist& t) noexcept {
   return std::abs(t.linear_mps) < 1e-6 && std::abs(t.angular_radps) < 1e-6;
@@ -150,15 +151,19 @@ bool Guard::too_old(base::Time now) const noexcept {
 }
 
 const nav::sense::Odometry& Guard::move(const BodyTwist& measured, base::Time now,
-                                        const std::optional<base::Attitude>& lean) noexcept {
+                                        const std::optional<base::Attitude>& lean,
+                                        double left_mps) noexcept {
   const double dt_s = began_ ? base::seconds(now - odometry_.stamp) : 0.0;
   const bool usable = std::isfinite(measured.linear_mps) && std::isfinite(measured.angular_radps);
   const BodyTwist t = usable
                           ? BodyTwist{std::clamp(measured.linear_mps, -kMost_mps, kMost_mps),
                                       std::clamp(measured.angular_radps, -kMost_radps, kMost_radps)}
                           : BodyTwist{};
+  const double aside_mps =
+      std::isfinite(left_mps) ? std::clamp(left_mps, -kAside_mps, kAside_mps) : 0.0;
   if (dt_s > 0.0 && dt_s < 1.0) {
-    odometry_.pose = odometry_.pose * nav::sense::along(t.linear_mps, t.angular_radps, dt_s);
+    odometry_.pose =
+        odometry_.pose * nav::sense::along(t.linear_mps, aside_mps, t.angular_radps, dt_s);
     if (trailer_) coupling_.drive(*trailer_, t, dt_s);
   }
   if (lean && std::isfinite(lean->roll_rad + lean->pitch_rad)) {
@@ -175,6 +180,7 @@ const nav::sense::Odometry& Guard::move(const BodyTwist& measured, base::Time no
   began_ = true;
   odometry_.stamp = now;
   odometry_.v_mps = t.linear_mps;
+  odometry_.left_mps = aside_mps;
   odometry_.yaw_rate_radps = t.angular_radps;
   return odometry_;
 }

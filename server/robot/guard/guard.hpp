@@ -57,8 +57,10 @@ class Guard {
   /// @return what it replaces, for somebody else to free
   std::shared_ptr<const Surroundings> take(std::shared_ptr<const Surroundings> news) noexcept;
   /// Once a tick: how the body moved. @param measured over ground. @param lean empty: level
+  /// @param left_mps of its origin, to its left; 1 m/s at most is believed
   const nav::sense::Odometry& move(const base::BodyTwist& measured, base::Time now,
-                                   const std::optional<base::Attitude>& lean = {}) noexcept;
+                                   const std::optional<base::Attitude>& lean = {},
+                                   double left_mps = 0.0) noexcept;
 
   const nav::sense::Odometry& odometry() const noexcept { return odometry_; }
 

@@ -46,7 +46,12 @@ void Robot::Impl::look_around() {
   base::BodyTwist moved = world.motion ? world.motion->twist : base::BodyTwist{};
   if (pose && pose->speed_mps) moved.linear_mps = *pose->speed_mps;
   if (pose && pose->yaw_rate_radps) moved.angular_radps = *pose->yaw_rate_radps;
-  nav::sense::Odometry state = guard.move(moved, clock.now(), attitude());
+  double left_mps = 0.0;
+  if (pose && pose->over_ground) {
+    moved.linear_mps = pose->over_ground->ahead_mps;
+    left_mps = pose->over_ground->left_mps;
+  }
+  nav::sense::Odometry state = guard.move(moved, clock.now(), attitude(), left_mps);
   (void)odometry.try_offer(state);  // one that is missed is a gap of 20 ms
   known_places.moved(state);
   read_the_tags(state);

@@ -54,9 +54,12 @@ TEST(Learned, WhatACalibrationMeasuredIsKeptForNinetyDaysFromThenOn) {
   known.acceleration_mps2 = nav::LearnedValue{0.46, 0.02};
   known.yaw_scale = nav::LearnedValue{0.71, 0.004};
   known.pull_1pm = nav::LearnedValue{-0.02, 0.002, 30.0 * 86'400.0};
+  known.pivot_m = nav::LearnedValue{-0.06, 0.004};
   const std::string text = learned_text(known, "bunker can", kNow);
   const auto later = learned_from(text, "bunker can", kNow + 59 * kDay);
-  ASSERT_TRUE(later.acceleration_mps2 && later.yaw_scale && later.pull_1pm);
+  ASSERT_TRUE(later.acceleration_mps2 && later.yaw_scale && later.pull_1pm && later.pivot_m);
+  EXPECT_NEAR(later.pivot_m->value, -0.06, 1e-9);
+  EXPECT_NEAR(later.pivot_m->sigma, std::hypot(0.004, 0.003 * std::sqrt(59.0)), 1e-6);
   EXPECT_NEAR(later.acceleration_mps2->value, 0.46, 1e-9);
   EXPECT_NEAR(later.yaw_scale->value, 0.71, 1e-9);
   EXPECT_GT(later.yaw_scale->sigma, 0.03);

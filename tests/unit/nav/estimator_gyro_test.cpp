@@ -72,6 +72,137 @@ TEST(EstimatorGyro, ACountThatJittersAtRestLeavesTheBiasToBeLearned) {
   EXPECT_NEAR(base::deg_from_rad(d.estimator.health().gyro_bias_radps.value()), 1.0, 0.05);
 }
 
+//   A load in its front: it turns about a place 8 cm ahead of its origin, and 8 cm behind.
+TEST(EstimatorGyro, LearnsAheadOfWhatItTurnsAndHoldsItsPlaceByThat) {
+  for (const double pivot_m : {-0.08, 0.0, 0.08}) {
+    Drive d = with_gyro();
+    d.pivot_m = pivot_m;
+    d.noise_m = 0.01;
+    d.run(10.0);
+    d.speed_mps = 0.6;
+    d.run(8.0);
+    for (const double way : {1.0, -1.0, 1.0, -1.0, 1.0, -1.0}) {
+      d.speed_mps = 0.0;
+      d.rate_radps = 0.5 * way;
+      d.run(4.0);
+      d.rate_radps = 0.0;
+      d.run(2.0);
+    }
+    ASSERT_TRUE(d.estimator.learned().pivot_m) << pivot_m;
+    EXPECT_NEAR(d.estimator.learned().pivot_m->value, pivot_m, 0.012);
+    // Without any help from outside it turns by half, and knows how far it went aside.
+    d.gnss = d.compass = false;
+    const double before_m = d.position_error_m();
+    d.rate_radps = 0.5;
+    d.run(6.28);
+    EXPECT_NEAR(d.pose()->over_ground.value().left_mps, -0.5 * pivot_m, 0.006);
+    d.rate_radps = 0.0;
+    d.run(1.0);
+    EXPECT_LT(d.position_error_m(), before_m + 0.025) << pivot_m;
+  }
+}
+
+//   For each metre that it drives on a slope it slides south by 0.1 m, whichever way it points.
+TEST(EstimatorGyro, TellsHowFastItSlides) {
+  Drive d = with_gyro();
+  d.antennas = true;
+  d.slide_north = -0.1;
+  d.run(10.0);
+  // North, west, south, east.
+  for (int leg = 0; leg < 4; ++leg) {
+    if (leg > 0) {
+      d.speed_mps = 0.0;
+      d.rate_radps = 0.25 * base::kPi;
+      d.run(2.0);
+      d.rate_radps = 0.0;
+    }
+    d.speed_mps = 0.8;
+    d.run(20.0);
+  }
+  EXPECT_NEAR(d.pose()->over_ground.value().left_mps, -0.08, 0.03);
+  EXPECT_NEAR(d.pose()->over_ground.value().ahead_mps, 0.8, 0.015);
+}
+
+//   Antennas askew by 4 degrees look like a robot that drives aside: nothing is made of it.
+TEST(EstimatorGyro, TakesWhatSeemsToBeCrabForNone) {
+  Drive d = with_gyro();
+  d.crab = 0.07;
+  d.antennas = true;
+  d.speed_mps = 0.8;
+  d.run(60.0);
+  EXPECT_NEAR(d.estimator.crab(), 0.07, 0.02);
+  EXPECT_NEAR(d.pose()->over_ground.value().left_mps, 0.0, 0.8 * 0.02);
+  EXPECT_NEAR(d.pose()->over_ground.value().ahead_mps, 0.8, 0.01);
+}
+
+//   A receiver that runs away to the side by 0.2 m/s for three seconds.
+TEST(EstimatorGyro, MakesOfALyingReceiverNoMoreThanASlopesSlide) {
+  Drive d = with_gyro();
+  d.run(10.0);
+  d.speed_mps = 0.6;
+  d.run(20.0);
+  double most = 0.0;
+  for (int i = 0; i < 500; ++i) {
+    if (i < 150) d.offset_east_m += 0.004;
+    d.tick();
+    most = std::max(most, std::abs(d.pose()->over_ground.value().left_mps) / 0.6);
+  }
+  EXPECT_LE(most, 0.12 + 1e-9);
+}
+
+//   Bends with a load in the front and a mast ahead, forwards and backwards, a receiver of 2 s.
+TEST(EstimatorGyro, LearnsAheadOfWhatItTurnsInBendsAsWell) {
+  for (const double pivot_m : {-0.1, 0.1}) {
+    EstimateParams params;
+    params.antenna_forward_m = 0.4;
+    Drive d(params);
+    d.gyro = true;
+    d.antenna_forward_m = 0.4;
+    d.pivot_m = pivot_m;
+    d.told_late_s = 1.0;
+    d.run(12.0);
+    d.speed_mps = 0.6;
+    d.run(10.0);
+    for (const double way : {0.5, -0.5, 0.5, -0.5}) {
+      d.speed_mps = way;
+      for (const double rate_radps : {0.4, -0.4}) {
+        d.rate_radps = rate_radps;
+        d.run(8.0);
+      }
+    }
+    EXPECT_NEAR(d.estimator.health().pivot_m, pivot_m, 0.03);
+    EXPECT_LT(d.position_error_m(), 0.03);
+  }
+}
+
+TEST(EstimatorGyro, WhatTurnsAboutItsAxleLearnsNothingElse) {
+  EstimateParams params;
+  params.pivot_sigma_m = 0.0;
+  Drive d(params);
+  d.gyro = true;
+  d.pivot_m = 0.05;
+  d.run(10.0);
+  d.speed_mps = 0.6;
+  d.run(8.0);
+  d.rate_radps = 0.4;
+  d.run(20.0);
+  EXPECT_EQ(d.estimator.health().pivot_m, 0.0);
+  EXPECT_FALSE(d.estimator.learned().pivot_m);
+}
+
+TEST(EstimatorGyro, RecallsAheadOfWhatItTurnsAndForgetsIt) {
+  Drive d = with_gyro();
+  Learned known;
+  known.pivot_m = LearnedValue{0.06, 0.004};
+  d.estimator.recall(known);
+  EXPECT_EQ(d.estimator.health().pivot_m, 0.06);
+  d.estimator.forget_vehicle();
+  EXPECT_EQ(d.estimator.health().pivot_m, 0.0);
+  known.pivot_m = LearnedValue{1.5, 0.004};  // no robot's
+  d.estimator.recall(known);
+  EXPECT_EQ(d.estimator.health().pivot_m, 0.0);
+}
+
 TEST(EstimatorGyro, TracksThatTurnLessThanTheySayDoNotMislead) {
   // Given tracks of which half of the turn is lost, which nobody told the estimator,
   Drive d = with_gyro();

@@ -28,6 +28,8 @@ class Drive {
   double crab = 0.0;        ///< for each metre so far to its left, reversing to its right
   double slide_east = 0.0;  ///< for each metre, whichever way it points
   double slide_north = 0.0;
+  double pivot_m = 0.0;  ///< so far ahead of its origin it turns about
+  double antenna_forward_m = 0.0;
   bool antennas = false;
   double slip = 1.0;       ///< true over measured travel
   double yaw_scale = 0.8;  ///< true over measured turning
@@ -96,15 +98,19 @@ class Drive {
   std::pair<double, double> over_ground(double yaw) const {
     const double c = std::cos(yaw);
     const double s = std::sin(yaw);
-    return {speed_mps * (c - crab * s) + std::abs(speed_mps) * slide_east,
-            speed_mps * (s + crab * c) + std::abs(speed_mps) * slide_north};
+    return {
+        speed_mps * (c - crab * s) + std::abs(speed_mps) * slide_east + pivot_m * rate_radps * s,
+        speed_mps * (s + crab * c) + std::abs(speed_mps) * slide_north - pivot_m * rate_radps * c};
   }
   void sense() {
     const auto [east_mps, north_mps] = over_ground(yaw_rad);
+    const double arm_e = antenna_forward_m * std::cos(yaw_rad);
+    const double arm_n = antenna_forward_m * std::sin(yaw_rad);
     const double late_s = told_late_s.value_or(params_.gnss_latency_s);
     seen_.push_back({now_ + base::from_seconds(late_s), now_,
-                     east_m + offset_east_m + noise_m * normal_(random_),
-                     north_m + noise_m * normal_(random_), yaw_rad, east_mps, north_mps});
+                     east_m + offset_east_m + arm_e + noise_m * normal_(random_),
+                     north_m + arm_n + noise_m * normal_(random_), yaw_rad,
+                     east_mps - rate_radps * arm_n, north_mps + rate_radps * arm_e});
   }
   void deliver() {
     while (!seen_.empty() && seen_.front().due <= now_) {

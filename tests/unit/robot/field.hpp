@@ -70,6 +70,7 @@ class Field {
   bool obeys = true;                      ///< the base moves as it is told; else
   base::BodyTwist does{};                 ///< it moves so
   double grip = 1.0;                      ///< part of the wheels' way that is driven over ground
+  double pivot_m = 0.0;                   ///< so far ahead of its origin it turns about
   std::optional<double> battery_v;
   std::optional<double> hdop;
   std::optional<double> fix_sigma_m;
@@ -87,6 +88,9 @@ class Field {
     const auto [v, w] = obeys ? command.twist : does;
     at.east_m += grip * v * 0.02 * std::cos(yaw_rad);
     at.north_m += grip * v * 0.02 * std::sin(yaw_rad);
+    const double middle_rad = yaw_rad + 0.5 * w * 0.02;
+    at.east_m += pivot_m * w * 0.02 * std::sin(middle_rad);
+    at.north_m -= pivot_m * w * 0.02 * std::cos(middle_rad);
     yaw_rad = base::wrap_rad(yaw_rad + w * 0.02);
     speak(v, w);
     if (more) more();

@@ -301,6 +301,22 @@ TEST(Guard, ItsOdometryFollowsAnArcExactly) {
   EXPECT_NEAR(o.pose.y_m, 2.0 * (1.0 - std::cos(5.0)), 1e-6);
 }
 
+//   Half a turn on the spot about a place 5 cm ahead of its origin: that ends 10 cm ahead.
+TEST(Guard, ItsOdometryGoesAsideAsWell) {
+  Guard guard;
+  base::Time now{};
+  (void)guard.move({}, now);
+  for (int i = 0; i < 500; ++i) {
+    now += std::chrono::milliseconds(20);
+    (void)guard.move({0.0, 0.1 * base::kPi}, now, {}, -0.05 * 0.1 * base::kPi);
+  }
+  EXPECT_NEAR(guard.odometry().pose.x_m, 0.10, 1e-5);
+  EXPECT_NEAR(guard.odometry().pose.y_m, 0.0, 1e-5);
+  const double x_m = guard.odometry().pose.x_m;
+  now += std::chrono::milliseconds(20);
+  EXPECT_EQ(guard.move({}, now, {}, std::nan("")).pose.x_m, x_m);
+}
+
 TEST(Guard, ItsOdometryStaysWhereCellsCanBeCountedWhateverIsMeasured) {
   Guard guard;
   base::Time now{};

@@ -195,7 +195,7 @@ TEST(ParameterWalk, WhatIsSaidToActAtTheNextStartDoesThenAndNotBefore) {
       EXPECT_TRUE(stage.begins(p)) << p.section << "." << p.info.name;
     }
   }
-  EXPECT_EQ(walked, 25);
+  EXPECT_EQ(walked, 26);
 }
 
 }  // namespace
