@@ -18,7 +18,7 @@ test('the first admin is made, logs out and in again, and sees the devices', asy
   const live = page.getByRole('group', { name: 'Link' });
   await page.goto(station.url);
   await page.getByLabel('Code').fill('AAAA-AAAA');
-  await page.getByLabel('User').fill('anna');
+  await page.getByLabel('User', { exact: true }).fill('anna');
   await page.getByLabel('Password').fill(PASSWORD);
   await press(page, 'Make the first admin');
   await expect(page.getByRole('alert')).toContainText('the code is wrong');
@@ -33,7 +33,7 @@ test('the first admin is made, logs out and in again, and sees the devices', asy
   await expect(devices).toContainText('This device, 127.0.0.1');
   await press(page, 'Log out');
 
-  await page.getByLabel('User').fill('anna');
+  await page.getByLabel('User', { exact: true }).fill('anna');
   await page.getByLabel('Password').fill('something else');
   await press(page, 'Log in');
   await expect(page.getByRole('alert')).toContainText('user or password is wrong');

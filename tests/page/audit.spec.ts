@@ -13,7 +13,7 @@ const card = (page: Page) => page.getByRole('region', { name: 'Who did what' });
 const deeds = (page: Page) => page.getByRole('list', { name: 'Deeds' }).getByRole('listitem');
 
 const enter = async (page: Page, user: string): Promise<void> => {
-  await page.getByLabel('User').fill(user);
+  await page.getByLabel('User', { exact: true }).fill(user);
   await page.getByLabel('Password').fill(PASSWORD);
   await press(page, 'Log in');
   await expect(page.getByRole('group', { name: 'Link' })).toContainText('Live');
@@ -23,7 +23,7 @@ const enter = async (page: Page, user: string): Promise<void> => {
 const set_up = async (page: Page, station: MortalStation): Promise<void> => {
   await page.goto(station.url);
   await page.getByLabel('Code').fill(await station.code());
-  await page.getByLabel('User').fill('anna');
+  await page.getByLabel('User', { exact: true }).fill('anna');
   await page.getByLabel('Password').fill(PASSWORD);
   await press(page, 'Make the first admin');
   await expect(page.getByRole('group', { name: 'Link' })).toContainText('Live');

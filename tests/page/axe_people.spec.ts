@@ -38,7 +38,7 @@ test('axe finds nothing on log-in and people, light, dark and in the sun; STOP i
   // Given the first admin, who is made,
   await page.goto(station.url);
   await page.getByLabel('Code').fill(await station.code());
-  await page.getByLabel('User').fill('anna');
+  await page.getByLabel('User', { exact: true }).fill('anna');
   await page.getByLabel('Password').fill(PASSWORD);
   await look('set-up');
   await press(page, 'Make the first admin');

@@ -13,7 +13,7 @@ const control = (page: Page) => page.getByRole('region', { name: 'Control' });
 
 const enter = async (page: Page, url: string, user: string): Promise<void> => {
   await page.goto(url);
-  await page.getByLabel('User').fill(user);
+  await page.getByLabel('User', { exact: true }).fill(user);
   await page.getByLabel('Password').fill(PASSWORD);
   await press(page, 'Log in');
   await expect(page.getByRole('group', { name: 'Link' })).toContainText('Live');
@@ -33,7 +33,7 @@ test('control is taken, asked for, handed over, and taken by force', async ({
   // given: anna, the admin, and ben, an operator
   await anna.goto(station.url);
   await anna.getByLabel('Code').fill(await station.code());
-  await anna.getByLabel('User').fill('anna');
+  await anna.getByLabel('User', { exact: true }).fill('anna');
   await anna.getByLabel('Password').fill(PASSWORD);
   await press(anna, 'Make the first admin');
   await expect(control(anna)).toContainText('Nobody has control');

@@ -23,7 +23,7 @@ test('a phone is paired, opens by its PIN, invites another one and sends it away
   // Given an admin who logged in by password
   await page.goto(station.url);
   await page.getByLabel('Code').fill(await station.code());
-  await page.getByLabel('User').fill('anna');
+  await page.getByLabel('User', { exact: true }).fill('anna');
   await page.getByLabel('Password').fill(PASSWORD);
   await press(page, 'Make the first admin');
   await expect(live).toContainText('Live');
@@ -97,7 +97,7 @@ test('a password is changed with the old one, and the other devices are out', as
   const next = 'five tractors in a barn';
   await page.goto(station.url);
   await page.getByLabel('Code').fill(await station.code());
-  await page.getByLabel('User').fill('anna');
+  await page.getByLabel('User', { exact: true }).fill('anna');
   await page.getByLabel('Password').fill(PASSWORD);
   await press(page, 'Make the first admin');
   await expect(page.getByRole('group', { name: 'Link' })).toContainText('Live');
