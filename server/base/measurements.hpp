@@ -69,7 +69,7 @@ struct BodyVector {
 /// One sample of an inertial unit, turned into the body's axes by its driver.
 struct Inertial {
   Time stamp;
-  /// About the body's axes, right-handed: up is the yaw rate, left turns positive. With the bias.
+  /// About the body's axes, left turns positive, bias included: on the level, up is the yaw rate.
   std::optional<BodyVector> rate_radps;
   std::optional<BodyVector> accel_mps2;  ///< specific force: standing level, up is +9.81
 };

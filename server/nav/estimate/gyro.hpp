@@ -17,7 +17,7 @@ class Gyro {
  public:
   static constexpr double kGap_s = 0.1;
 
-  /// @param stamp later than the last one. @param rate_radps about the vertical, bias included.
+  /// @param stamp later than the last one. @param rate_radps of the heading, bias included.
   void put(base::Time stamp, double rate_radps) noexcept {
     if (size_ > 0) {
       const double dt_s = base::seconds(stamp - last().stamp);

@@ -15,7 +15,7 @@ struct LearnedValue {
 struct Learned {
   std::optional<LearnedValue> odometry_scale;   ///< true way over that of the tracks
   std::optional<LearnedValue> gyro_bias_radps;  ///< what the gyro shows at rest
-  std::optional<LearnedValue> pivot_m{};        ///< ahead of the origin it turns about that
+  std::optional<LearnedValue> pivot_m{};  ///< of the place it turns about, ahead of its origin
   // Not the estimator's: nav/identify.
   std::optional<LearnedValue> delay_s{};       ///< from a command to its motion
   std::optional<LearnedValue> braking_mps2{};  ///< it brakes no harder

@@ -51,12 +51,15 @@ void Estimator::take(const base::Inertial& inertial) {
   const bool accel_ok = !inertial.accel_mps2 || finite(*inertial.accel_mps2, kAccelMost_mps2);
   if (!rate_ok || !accel_ok) return refuse(in, Refusal::NotFinite);
   if (!in_order(in, last_inertial_, inertial.stamp)) return;
-  const double turn_radps = gyro_.rate_radps() - belief_.x(kGyroBias);
-  tilt_.put(inertial, belief_.x(kScale) * tracks_.linear_mps, turn_radps);
+  // A gyro that lies about a turn must not turn the lean as well, nor what was made of it.
+  const bool by_tracks = !inertial.rate_radps || votes_.out(base::Sense::Gyro);
+  const double up_radps = by_tracks ? belief_.x(kYawScale) * tracks_.angular_radps
+                                    : inertial.rate_radps->up - belief_.x(kGyroBias);
+  tilt_.put(inertial, belief_.x(kScale) * tracks_.linear_mps, up_radps);
   if (!inertial.rate_radps) return;
-  const double level_radps = tilt_.level_radps(*inertial.rate_radps, inertial.stamp);
-  gyro_.put(inertial.stamp, level_radps);
-  votes_.gyro(level_radps - belief_.x(kGyroBias), inertial.rate_radps->up, inertial.stamp);
+  const double turn_radps = tilt_.heading_radps(*inertial.rate_radps, inertial.stamp);
+  gyro_.put(inertial.stamp, turn_radps);
+  votes_.gyro(turn_radps - belief_.x(kGyroBias), inertial.rate_radps->up, inertial.stamp);
   if (!outvoted(base::Sense::Gyro, in)) in.refused_since.reset();
 }
 

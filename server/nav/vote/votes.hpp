@@ -45,7 +45,7 @@ class Votes {
   /// The same of a base that tells nothing: what it was told to do. It has no voice, and says only
   /// which way it is going.
   void told_to(double ahead_m, double turn_rad) noexcept;
-  /// @param rate_radps about the vertical, without the bias. @param raw as the device told it.
+  /// @param rate_radps of the heading, without the bias. @param raw as the device told it.
   void gyro(double rate_radps, double raw, Time stamp) noexcept;
   /// @param taken when the receiver was there.
   void position(const Spot& spot, int fix_class, Time stamp) noexcept;

@@ -150,7 +150,7 @@ TEST(EstimatorGyro, MakesOfALyingReceiverNoMoreThanASlopesSlide) {
   EXPECT_LE(most, 0.12 + 1e-9);
 }
 
-//   Bends with a load in the front and a mast ahead, forwards and backwards, a receiver of 2 s.
+//   Bends with a load in the front and a mast ahead, forwards and backwards, a receiver of 1 s.
 TEST(EstimatorGyro, LearnsAheadOfWhatItTurnsInBendsAsWell) {
   for (const double pivot_m : {-0.1, 0.1}) {
     EstimateParams params;

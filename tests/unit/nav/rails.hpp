@@ -28,7 +28,8 @@ class Drive {
   double crab = 0.0;        ///< for each metre so far to its left, reversing to its right
   double slide_east = 0.0;  ///< for each metre, whichever way it points
   double slide_north = 0.0;
-  double pivot_m = 0.0;  ///< so far ahead of its origin it turns about
+  double pivot_m = 0.0;    ///< so far ahead of its origin it turns about
+  double pitch_rad = 0.0;  ///< as gravity shows it: no other sense knows
   double antenna_forward_m = 0.0;
   bool antennas = false;
   double slip = 1.0;       ///< true over measured travel
@@ -74,7 +75,8 @@ class Drive {
         base::Inertial inertial;
         inertial.stamp = now_ - std::chrono::milliseconds(ms);
         inertial.rate_radps = base::BodyVector{0.0, 0.0, rate_radps + gyro_bias_radps};
-        inertial.accel_mps2 = base::BodyVector{0.0, speed_mps * rate_radps, 9.81};
+        inertial.accel_mps2 = base::BodyVector{9.81 * std::sin(pitch_rad), speed_mps * rate_radps,
+                                               9.81 * std::cos(pitch_rad)};
         estimator.take(inertial, now_);
       }
     }
