@@ -9,7 +9,7 @@
 // kinematics. The robot's outline keeps `least_m` from everything that stands there, and pays for
 // being nearer than `wanted_m`. What ends at the edge of what is seen is told as `partial`: drive
 // it, look, ask again. Where the robot stands nearer than `least_m` already, it may leave that
-// place as long as it comes no nearer; about its start it may come by 1.5 cm nearer than that.
+// place as long as it comes no nearer; turning where it stands it may come by 3 cm nearer.
 //
 // Frame O of the odometry for everything (nav/sense/odometry.hpp): the route, the fence and the
 // answer. Metres, radians left positive. Deterministic: equal questions, equal answers.

@@ -13,7 +13,8 @@ constexpr float kBetween_m = 0.010F;  // what interpolation may tell too much
 constexpr float kRoom_m = 0.02F;      // the same of coarse cells
 constexpr double kAboutStart_m = 1.5;
 constexpr float kNearer_m = 0.003F;
-constexpr float kTurnsNearer_m = 0.015F;
+constexpr double kTurnsHere_m = 0.05;  // a turn on the spot, but for what is stored of its place
+constexpr float kTurnsNearer_m = 0.03F;
 constexpr float kSwings_m = 0.2F;    // so much a corner may swing out in the turn that begins a way
 constexpr float kVouches_m = 0.03F;  // what interpolation may tell too much, twice
 constexpr double kBeyond_m = 3.0 * Body::kApart_m;
@@ -71,8 +72,7 @@ void Body::set(const sense::Footprint& shape, double least_m, const Field& field
   sample_m_ = std::sqrt(least_m_ * least_m_ + static_cast<float>(2.0 * kApart_m * kApart_m));
   lay(shape, 2.0 * kApart_m, 4.0 * kApart_m, coarse_);
   lay(shape, 0.4 * kApart_m, 2.0 * kApart_m, dense_);
-  turns_m_ = std::sqrt(least_m_ * least_m_ + static_cast<float>(0.08 * kApart_m * kApart_m)) -
-             kTurnsNearer_m;
+  dense_m_ = std::sqrt(least_m_ * least_m_ + static_cast<float>(0.08 * kApart_m * kApart_m));
   cover(shape);
 }
 
@@ -172,9 +172,9 @@ bool Body::stands(const Stand& at, bool borders) const noexcept {
   });
 }
 
-/// As near as it is there, and no nearer; or as a turn may that begins there.
-bool Body::stands_as_at_start(const Stand& at) const noexcept {
-  const float clear = std::min(turns_m_, start_clear_m_);
+/// As near as it is there, and no nearer; or as a turn on the spot may.
+bool Body::stands_as_at_start(const Stand& at, bool turns) const noexcept {
+  const float clear = std::min(turns ? dense_m_ - kTurnsNearer_m : dense_m_, start_clear_m_);
   const float room = std::min(kRoom_m, start_room_m_);
   return std::all_of(cover_.begin(), cover_.end(), [&](const Circle& circle) {
     return circle_fits(at, circle, true) || part_fits(at, dense_, circle.dense, clear, room);
@@ -186,9 +186,11 @@ bool Body::fits(const Stand& at) const noexcept {
   if (circle_fits(at, about_, true)) return true;
   const double dx = at.x_m - start_.x_m;
   const double dy = at.y_m - start_.y_m;
-  const bool as_at_start = allowed_ && dx * dx + dy * dy < kAboutStart_m * kAboutStart_m &&
+  const double far_m2 = dx * dx + dy * dy;
+  const bool as_at_start = allowed_ && far_m2 < kAboutStart_m * kAboutStart_m &&
                            (start_clear_m_ < sample_m_ + kSwings_m || start_room_m_ < kRoom_m);
-  return as_at_start ? stands_as_at_start(at) : stands(at, true);
+  return as_at_start ? stands_as_at_start(at, far_m2 < kTurnsHere_m * kTurnsHere_m)
+                     : stands(at, true);
 }
 
 /// Along the outline nothing comes nearer faster than one goes: what has more room than is asked

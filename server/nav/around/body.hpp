@@ -31,8 +31,8 @@ class Body {
 
   /// @param field laid and priced
   void set(const sense::Footprint& shape, double least_m, const Field& field);
-  /// Where the robot stands it may stand, and about there come no nearer to anything than it is, or
-  /// by 1.5 cm nearer than least_m: it has stopped before something, and must turn away.
+  /// Where the robot stands it may stand, and about there come no nearer to anything than it is;
+  /// turn on the spot there by 3 cm nearer than least_m: it has stopped before something.
   void allow_start(const Pose2& start);
 
   bool fits(const Stand& at) const noexcept;
@@ -76,7 +76,7 @@ class Body {
   Circle circle_of(const sense::Footprint& shape, double from, double to) const;
   bool circle_fits(const Stand& at, const Circle& circle, bool borders) const noexcept;
   bool stands(const Stand& at, bool borders) const noexcept;
-  bool stands_as_at_start(const Stand& at) const noexcept;
+  bool stands_as_at_start(const Stand& at, bool turns) const noexcept;
   bool part_fits(const Stand& at, const Points& points, const Circle::Part& part, float clear,
                  float room) const noexcept;
 
@@ -88,7 +88,7 @@ class Body {
   double inner_m_ = 0.0;
   float least_m_ = 0.0F;  ///< from any point of the body to the middle of what stands there
   float sample_m_ = 0.0F;
-  float turns_m_ = 0.0F;  ///< as least_m_ for the dense points, about the start
+  float dense_m_ = 0.0F;  ///< as least_m_ for the dense points
   Pose2 start_;
   bool allowed_ = false;
   float start_clear_m_ = 0.0F;

@@ -18,9 +18,9 @@ namespace {
 using base::BodyTwist;
 using nav::sense::Limit;
 
-constexpr double kPicture_s = 0.5;  // older, and whoever makes them stands still
-constexpr double kLean_s = 0.15;    // older, and the body may lie otherwise by now
-constexpr double kAside_mps = 1.0;
+constexpr double kPicture_s = 0.5;    // older, and whoever makes them stands still
+constexpr double kLean_s = 0.15;      // older, and the body may lie otherwise by now
+constexpr double kAside_mps = 1.0;    // faster aside is no slide and no turn
 constexpr double kMost_mps = 50.0;    // what is measured to be faster is none of ours: the pose
 constexpr double kMost_radps = 50.0;  // must stay where cells can be counted
 constexpr double kLeast_mps = 0.05;   // slower, and it stands
@@ -35,7 +35,7 @@ constexpr double kDockIs_m = 0.3;  // what stands within this beyond the vehicle
 constexpr double kDockLeast_mps = 0.06;
 constexpr double kFollows_m = 0.02;
 constexpr double kHis_m = 0.3;          // what stands this near to somebody who moves is he
-constexpr double kTurnsRound_m = 0.07;  // so that a way around, too, may begin with a turn
+constexpr double kTurnsRound_m = 0.06;  // so that a way around, too, may begin with a turn
 
 bool stands(const BodyTwist& t) noexcept {
   return std::abs(t.linear_mps) < 1e-6 && std::abs(t.angular_radps) < 1e-6;
