@@ -69,3 +69,16 @@ test('anyone may stop, without a log-in', async ({ page, station }) => {
   await press(page, 'Emergency stop');
   await expect(page.getByRole('button', { name: 'Emergency stop' })).toContainText('STOPPED');
 });
+
+test('the log says who pressed the stop', async ({ page, station }) => {
+  await page.goto(station.url);
+  await page.getByLabel('Code').fill(await station.code());
+  await page.getByLabel('User', { exact: true }).fill('anna');
+  await page.getByLabel('Password').fill(PASSWORD);
+  await press(page, 'Make the first admin');
+  await expect(page.getByRole('group', { name: 'Link' })).toContainText('Live');
+  await press(page, 'Emergency stop');
+  await expect(page.getByRole('button', { name: 'Emergency stop' })).toContainText('STOPPED');
+  await tab(page, 'Log');
+  await expect(page.getByText('emergency stop by anna').first()).toBeVisible();
+});
