@@ -16,13 +16,13 @@
 #include <optional>
 
 #include "base/measurements.hpp"
+#include "nav/estimate/gyro.hpp"
 
 namespace roverd::nav {
 
 class Tilt {
  public:
   static constexpr double kTau_s = 2.0;  ///< gravity's time constant: longer than a start or a stop
-  static constexpr double kGap_s = 0.1;  ///< what was turned in a longer one nobody knows
 
   /// @param speed_mps of the vehicle: a bend pushes sideways. @param up_radps its turn about its
   /// own up axis, without bias. @param sample finite; its rate about that axis is not looked at
@@ -30,7 +30,7 @@ class Tilt {
     if (sample.rate_radps) {
       const double dt_s = turned_ ? base::seconds(sample.stamp - *turned_) : 1e9;
       turned_ = sample.stamp;
-      if (known_ && dt_s > 0.0 && dt_s <= kGap_s) {
+      if (known_ && dt_s > 0.0 && dt_s <= Gyro::kGap_s) {
         lean_on({sample.rate_radps->forward, sample.rate_radps->left, up_radps}, dt_s);
         known_ = sample.stamp;
       }
@@ -42,9 +42,9 @@ class Tilt {
     const double force = std::sqrt(ahead * ahead + left * left + up * up);
     if (force < 8.0 || force > 11.6) return;  // a blow is not gravity
     const bool anew = !known_ || base::seconds(sample.stamp - *known_) > kFresh_s;
-    const double dt_s = weighed_ ? base::seconds(sample.stamp - *weighed_) : kGap_s;
+    const double dt_s = weighed_ ? base::seconds(sample.stamp - *weighed_) : Gyro::kGap_s;
     known_ = weighed_ = sample.stamp;
-    const double after_s = std::clamp(dt_s, 0.0, kGap_s);  // one sample is not many
+    const double after_s = std::clamp(dt_s, 0.0, Gyro::kGap_s);  // one sample is not many
     const double part = anew ? 1.0 : after_s / (kTau_s + after_s);
     roll_rad_ += part * (std::atan2(left, up) - roll_rad_);
     pitch_rad_ += part * (std::atan2(ahead, std::hypot(left, up)) - pitch_rad_);

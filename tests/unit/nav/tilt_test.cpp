@@ -50,16 +50,17 @@ class Body {
   double off_deg() const {
     const auto lean = tilt.at(now_);
     if (!lean) return 180.0;
-    return deg_from_rad(std::max(std::abs(lean->roll_rad - std::atan2(R_EB_(2, 1), R_EB_(2, 2))),
-                                 std::abs(lean->pitch_rad - std::asin(R_EB_(2, 0)))));
+    return deg_from_rad(
+        std::max(std::abs(lean->roll_rad - roll_rad()), std::abs(lean->pitch_rad - pitch_rad())));
   }
-  base::Time now() const { return now_; }
 
   Tilt tilt;
   double heading_off_deg = 0.0;  ///< at most
   double lean_off_deg = 0.0;
 
  private:
+  double roll_rad() const { return std::atan2(R_EB_(2, 1), R_EB_(2, 2)); }
+  double pitch_rad() const { return std::asin(R_EB_(2, 0)); }
   double yaw_rad() const { return std::atan2(R_EB_(1, 0), R_EB_(0, 0)); }
   void move(const Eigen::Vector3d& by_rad) {
     const double angle_rad = by_rad.norm();
@@ -74,9 +75,7 @@ class Body {
     one.rate_radps = base::BodyVector{radps.x(), radps.y(), radps.z()};
     one.accel_mps2 = base::BodyVector{up.x(), up.y(), up.z()};
     tilt.put(one, 0.0, radps.z());
-    if (tells_) {
-      tilt.put(base::Attitude{now_, std::atan2(R_EB_(2, 1), R_EB_(2, 2)), std::asin(R_EB_(2, 0))});
-    }
+    if (tells_) tilt.put(base::Attitude{now_, roll_rad(), pitch_rad()});
     return *one.rate_radps;
   }
 
@@ -192,7 +191,7 @@ TEST(Tilt, AnOlderWordOfADeviceIsNone) {
   EXPECT_EQ(tilt.at(now)->pitch_rad, 0.2);
 }
 
-//   Standing on a slope of 15 degrees, tracks, satellites and compass well; the gyro turns.
+//   Straight up a slope of 15 degrees, tracks, satellites and compass well; the gyro turns.
 TEST(Tilt, AGyroThatLiesAboutATurnDoesNotTurnTheLean) {
   Drive d;
   d.pitch_rad = rad_from_deg(15.0);
