@@ -1,6 +1,6 @@
 // Where the robot wants to know who is there: first set-up, log-in, my devices, on a phone.
 
-import { press, tab } from './page';
+import { make_first_admin, press, tab } from './page';
 import { expect, test } from './station';
 
 test.use({
@@ -71,12 +71,7 @@ test('anyone may stop, without a log-in', async ({ page, station }) => {
 });
 
 test('the log says who pressed the stop', async ({ page, station }) => {
-  await page.goto(station.url);
-  await page.getByLabel('Code').fill(await station.code());
-  await page.getByLabel('User', { exact: true }).fill('anna');
-  await page.getByLabel('Password').fill(PASSWORD);
-  await press(page, 'Make the first admin');
-  await expect(page.getByRole('group', { name: 'Link' })).toContainText('Live');
+  await make_first_admin(page, station, PASSWORD);
   await press(page, 'Emergency stop');
   await expect(page.getByRole('button', { name: 'Emergency stop' })).toContainText('STOPPED');
   await tab(page, 'Log');

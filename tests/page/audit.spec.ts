@@ -2,8 +2,8 @@
 
 import type { Page } from '@playwright/test';
 
-import { press, tab } from './page';
-import { expect, test, type MortalStation } from './station';
+import { make_first_admin, press, tab } from './page';
+import { expect, test } from './station';
 
 test.use({ more: ['--set', 'server.access=true'] });
 
@@ -16,16 +16,6 @@ const enter = async (page: Page, user: string): Promise<void> => {
   await page.getByLabel('User', { exact: true }).fill(user);
   await page.getByLabel('Password').fill(PASSWORD);
   await press(page, 'Log in');
-  await expect(page.getByRole('group', { name: 'Link' })).toContainText('Live');
-};
-
-/** Makes the first admin, who is then logged in. */
-const set_up = async (page: Page, station: MortalStation): Promise<void> => {
-  await page.goto(station.url);
-  await page.getByLabel('Code').fill(await station.code());
-  await page.getByLabel('User', { exact: true }).fill('anna');
-  await page.getByLabel('Password').fill(PASSWORD);
-  await press(page, 'Make the first admin');
   await expect(page.getByRole('group', { name: 'Link' })).toContainText('Live');
 };
 
@@ -61,7 +51,7 @@ for (const [name, width, height] of [
 
     test('an admin reads, searches, pages, checks and takes away', async ({ page, station }) => {
       // Given many deeds, of which one was refused,
-      await set_up(page, station);
+      await make_first_admin(page, station, PASSWORD);
       await delete_many(page, 70);
       await post(page, '/users', { name: 'bert', role: 'viewer', password: 'short' });
       await tab(page, 'Log');
@@ -116,7 +106,7 @@ for (const [name, width, height] of [
 }
 
 test('who is no admin does not find it', async ({ page, station }) => {
-  await set_up(page, station);
+  await make_first_admin(page, station, PASSWORD);
   await post(page, '/users', { name: 'bert', role: 'operator', password: PASSWORD });
   await tab(page, 'Log');
   await expect(card(page)).toBeVisible();

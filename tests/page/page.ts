@@ -26,6 +26,20 @@ export const press = (page: Page, name: string): Promise<void> =>
 export const tab = (page: Page, name: 'Drive' | 'Plan' | 'Missions' | 'Log'): Promise<void> =>
   page.getByRole('navigation', { name: 'Panels' }).getByRole('button', { name }).click();
 
+/** Opens the page and makes anna the first admin, who is then logged in. */
+export const make_first_admin = async (
+  page: Page,
+  station: { readonly url: string; code(): Promise<string> },
+  password: string,
+): Promise<void> => {
+  await page.goto(station.url);
+  await page.getByLabel('Code').fill(await station.code());
+  await page.getByLabel('User', { exact: true }).fill('anna');
+  await page.getByLabel('Password').fill(password);
+  await press(page, 'Make the first admin');
+  await expect(page.getByRole('group', { name: 'Link' })).toContainText('Live');
+};
+
 /** Opens the page and waits until the robot is on the map. */
 export const open_page = async (page: Page, url: string): Promise<void> => {
   await page.goto(url);

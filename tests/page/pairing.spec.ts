@@ -1,6 +1,6 @@
 // A PIN instead of the password, as gloves want it, and the invitation of another phone.
 
-import { press, tab } from './page';
+import { make_first_admin, press, tab } from './page';
 import { expect, test } from './station';
 
 test.use({
@@ -21,12 +21,7 @@ test('a phone is paired, opens by its PIN, invites another one and sends it away
     for (const digit of pin) await press(on, digit);
   };
   // Given an admin who logged in by password
-  await page.goto(station.url);
-  await page.getByLabel('Code').fill(await station.code());
-  await page.getByLabel('User', { exact: true }).fill('anna');
-  await page.getByLabel('Password').fill(PASSWORD);
-  await press(page, 'Make the first admin');
-  await expect(live).toContainText('Live');
+  await make_first_admin(page, station, PASSWORD);
 
   // who pairs the phone, at first with a PIN that is too easy,
   await tab(page, 'Log');
@@ -95,12 +90,7 @@ test('a password is changed with the old one, and the other devices are out', as
   station,
 }) => {
   const next = 'five tractors in a barn';
-  await page.goto(station.url);
-  await page.getByLabel('Code').fill(await station.code());
-  await page.getByLabel('User', { exact: true }).fill('anna');
-  await page.getByLabel('Password').fill(PASSWORD);
-  await press(page, 'Make the first admin');
-  await expect(page.getByRole('group', { name: 'Link' })).toContainText('Live');
+  await make_first_admin(page, station, PASSWORD);
   for (const device of ['tablet', 'old phone']) {
     await station.rest('POST', '/session', { user: 'anna', password: PASSWORD, device });
   }
