@@ -40,7 +40,8 @@ Driver::Driver(std::string name, const Params& params, MakeLink make_link,
           {std::move(name), "waiting for a frame", params.retry_first_s, params.retry_max_s},
           std::move(make_link), [this](Bytes b, Time t) { on_bytes(b, t); },
           [this] {
-            decoder_.forget();
+            // A frame that is still coming in is not cut by its length.
+            if (!port_.is_open()) decoder_.forget();
             delay_.forget();
             last_ns_.reset();
             last_sequence_.reset();
@@ -58,6 +59,7 @@ void Driver::restart(Time now) {
 
 void Driver::tick(Time now) {
   const double silent_s = base::seconds(now - port_.last_heard());
+  if (base::seconds(now - last_bytes_) > params_.silent_after_s) decoder_.forget();
   if (port_.is_open() && params_.silent_reopen_s > 0.0 && silent_s > params_.silent_reopen_s) {
     port_.fail("no frame", now);
   } else if (port_.is_up() && silent_s > params_.silent_after_s) {
@@ -67,6 +69,7 @@ void Driver::tick(Time now) {
 }
 
 void Driver::on_bytes(Bytes bytes, Time stamp) {
+  last_bytes_ = stamp;
   decoder_.feed(bytes, [&](const Frame& frame) { on_frame(frame, stamp); });
   count_refused();
 }

@@ -132,6 +132,35 @@ TEST_F(OnWire, RefusedFramesAreCountedByCauseAndNotHeard) {
   EXPECT_EQ(counted("bytes outside any frame"), 5U);
 }
 
+TEST_F(OnWire, AFrameThatComesSlowerThanSilenceIsLetByWhole) {
+  // Given a frame of more points than are taken, its sender slow: it is silent by now,
+  send(cloud_frame(header_of(1), {1.0F, 0.0F, 0.0F}));
+  const Blob large = cloud_frame(header_of(2, 1'050'000'000), std::vector<float>(3'600'000, 1.0F));
+  const std::size_t piece = large.size() / 8;
+  for (std::size_t at = 0; at < large.size(); at += piece) {
+    now += 100ms;
+    driver.tick(now);
+    send({large.begin() + static_cast<std::ptrdiff_t>(at),
+          large.begin() + static_cast<std::ptrdiff_t>(std::min(at + piece, large.size()))});
+  }
+  EXPECT_EQ(driver.status(now).phase, DriverPhase::Faulty);
+  // when the next one comes, then it is used, and of the large one nothing was taken for another.
+  send(cloud_frame(header_of(3, 2'000'000'000), {1.0F, 0.0F, 0.0F}));
+  EXPECT_EQ(sights.size(), 2U);
+  EXPECT_EQ(driver.status(now).refused, 1U);
+  EXPECT_EQ(counted("more than 1000000 points"), 1U);
+}
+
+TEST_F(OnWire, AFrameThatWasCutOffDoesNotSwallowTheNextOnes) {
+  // Given half a frame, and then nothing for longer than a camera may be silent,
+  const Blob half = cloud_frame(header_of(1), std::vector<float>(30'000, 1.0F));
+  send({half.begin(), half.begin() + static_cast<std::ptrdiff_t>(half.size() / 2)});
+  for (int i = 0; i < 4; ++i) driver.tick(now += 100ms);
+  // when whole frames come, then the first of them is used.
+  send(cloud_frame(header_of(2, 2'000'000'000), {1.0F, 0.0F, 0.0F}));
+  EXPECT_EQ(sights.size(), 1U);
+}
+
 /// A camera's program, run as a process.
 class Sender {
  public:
