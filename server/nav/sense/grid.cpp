@@ -294,14 +294,25 @@ void Grid::look_along(const Line& line, std::size_t sector, const Sectors& s, st
   const auto step_bit = static_cast<std::uint32_t>(bits * kOne);
   auto bit = static_cast<std::uint32_t>(f * bits * kOne);
   const std::uint64_t seen = s.of[sector].seen;
-  for (std::size_t n = line.from; n < line.to; ++n, px += step_x, py += step_y, bit += step_bit) {
+  // Not read again for every cell: what is written there might be anything to the compiler.
+  Cell* const cells = cells_.data();
+  const auto side = static_cast<std::uint32_t>(side_);
+  const auto mask = static_cast<std::uint32_t>(mask_);
+  const std::size_t stride = stride_;
+  const std::int32_t x0 = x0_;
+  const std::int32_t y0 = y0_;
+  const std::size_t from = line.from;
+  const std::size_t to = line.to;
+  for (std::size_t n = from; n < to; ++n, px += step_x, py += step_y, bit += step_bit) {
     const std::uint32_t b = bit >> 16U;
     if (b >= Sectors::kSteps) return;
     const std::int32_t ix = base_x + (px >> 16);
     const std::int32_t iy = base_y + (py >> 16);
-    if (!inside(ix, iy)) return;
-    const std::size_t i = index(ix, iy);
-    Cell& c = cells_[i];
+    if (static_cast<std::uint32_t>(ix - x0) >= side || static_cast<std::uint32_t>(iy - y0) >= side)
+      return;
+    const std::size_t i =
+        (static_cast<std::uint32_t>(iy) & mask) * stride + (static_cast<std::uint32_t>(ix) & mask);
+    Cell& c = cells[i];
     const bool looked = ((seen >> b) & 1U) != 0;
     if (c.known == Known::Occupied || c.known == Known::Drop) {
       const double u = ix + static_cast<double>(spans_[i].x) - line.x;
@@ -311,9 +322,7 @@ void Grid::look_along(const Line& line, std::size_t sector, const Sectors& s, st
       c = Cell{};  // gone; whether the ground is free is another ray's word
     }
     if (!looked) continue;
-    c.known = Known::Free;
-    c.sensor = sensor;
-    c.ms = now_ms;
+    c = {Known::Free, c.misses, sensor, c.hits, now_ms};
   }
 }
 
@@ -395,15 +404,18 @@ void Grid::patch(const Pose2& about, double reach_m, base::Time now, Patch& out,
   }
   const std::int32_t x_from = std::max(out.x0, x0_);
   const std::int32_t x_to = std::min(out.x0 + out.side, x0_ + side_);
+  const std::int32_t out_x0 = out.x0;
+  const std::int32_t mask = mask_;
   for (std::int32_t y = std::max(out.y0, y0_); y < std::min(out.y0 + out.side, y0_ + side_); ++y) {
     Patch::Cell* row = out.cells.data() +
                        static_cast<std::size_t>(y - out.y0) * static_cast<std::size_t>(out.side);
+    const Cell* ours = cells_.data() + static_cast<std::size_t>(y & mask) * stride_;
     for (std::int32_t x = x_from; x < x_to; ++x) {
-      const Cell& c = cell(x, y);
+      const Cell c = ours[x & mask];
       if (c.known == Known::Unknown) continue;
       const std::uint32_t age = age_ms(now_ms, c.ms);
       if (age > (c.known == Known::Free ? free_ms[c.sensor] : hit_ms)) continue;
-      row[x - out.x0] = {c.known, c.sensor,
+      row[x - out_x0] = {c.known, c.sensor,
                          static_cast<std::uint16_t>(std::min(age / 100U, 65535U))};
     }
   }

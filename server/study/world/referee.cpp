@@ -24,13 +24,14 @@ constexpr double kAfterwards_s = 1.0;
 constexpr double kAnew_m = 0.05;
 constexpr double kRoomMost_m = 1.0;  // what is farther is told so
 constexpr double kStandsFor_s = 0.3;
-constexpr double kOverIt_m = 0.1;       // over what the guard lets pass above
-constexpr double kUnderIt_m = 0.02;     // what is lower is ground to it
-constexpr double kAbout_m = 0.2;        // of a place that was touched
-constexpr double kThrough_m = 5.0;      // beams lie no farther from each other than a pole is wide
-constexpr double kBefore_m = 0.2;       // where it was met
-constexpr std::uint32_t kThrough = 30;  // several scans
-constexpr double kSightReach_m = 8.0;   // farther nothing is looked at
+constexpr double kOverIt_m = 0.1;      // over what the guard lets pass above
+constexpr double kUnderIt_m = 0.02;    // what is lower is ground to it
+constexpr double kAbout_m = 0.2;       // of a place that was touched
+constexpr double kThrough_m = 5.0;     // beams lie no farther from each other than a pole is wide
+constexpr double kBefore_m = 0.2;      // where it was met
+constexpr std::uint8_t kThrough = 30;  // several scans
+constexpr std::size_t kNowhere = ~std::size_t{0};
+constexpr double kSightReach_m = 8.0;  // farther nothing is looked at
 
 std::string_view word_of(world::Cause cause) {
   switch (cause) {
@@ -77,7 +78,8 @@ Referee::Referee(const sim::Surroundings& around, const nav::sense::ProtectParam
       pass_below_m_(ground.pass_below_m),
       grass_m_(ground.min_height_m + ground.rough_m),
       plane_m_(plane_m),
-      met_(kMapSide * kMapSide) {
+      met_(kMapSide * kMapSide),
+      through_(met_.size()) {
   reach_m_ = 0.0;
   for (const world::Vec2 p : around_.witness().body().outline) {
     reach_m_ = std::max(reach_m_, std::hypot(p.x, p.y));
@@ -87,12 +89,13 @@ Referee::Referee(const sim::Surroundings& around, const nav::sense::ProtectParam
   places_.resize(sights_.size());
 }
 
-Referee::Met* Referee::met_at(double x_m, double y_m) {
-  const double column = std::floor((x_m + kMap_m) / kMapCell_m);
-  const double row = std::floor((y_m + kMap_m) / kMapCell_m);
-  const auto side = static_cast<double>(kMapSide);
-  if (!(column >= 0.0 && column < side && row >= 0.0 && row < side)) return nullptr;
-  return &met_[static_cast<std::size_t>(row) * kMapSide + static_cast<std::size_t>(column)];
+std::size_t Referee::map_cell(double x_m, double y_m) noexcept {
+  constexpr double kPerCell = 1.0 / kMapCell_m;
+  const double column = (x_m + kMap_m) * kPerCell;
+  const double row = (y_m + kMap_m) * kPerCell;
+  constexpr auto kSide = static_cast<double>(kMapSide);
+  if (!(column >= 0.0 && column < kSide && row >= 0.0 && row < kSide)) return kNowhere;
+  return static_cast<std::size_t>(row) * kMapSide + static_cast<std::size_t>(column);
 }
 
 void Referee::saw(const std::vector<world::Sweep>& sweeps, const world::Pose& mount, double now_s) {
@@ -111,9 +114,9 @@ void Referee::saw(const std::vector<world::Sweep>& sweeps, const world::Pose& mo
       if (goes_on || range_m > 0.0) passes({sensor.p.x, sensor.p.y}, {end.x, end.y});
       if (range_m <= 0.0 || range_m > kSightReach_m) continue;
       const world::Vec3 at = place(range_m);
-      if (Met* met = met_at(at.x, at.y)) {
-        const bool thing = s.cause == world::Cause::Thing;
-        *met = {static_cast<float>(now_s), s.cause, thing ? 0 : met->through};
+      if (const std::size_t cell = map_cell(at.x, at.y); cell != kNowhere) {
+        met_[cell] = {static_cast<float>(now_s), s.cause};
+        if (s.cause == world::Cause::Thing) through_[cell] = 0;
       }
       if (s.thing < 0 || s.cause != world::Cause::Thing) continue;
       const auto thing = static_cast<std::size_t>(s.thing);
@@ -126,12 +129,15 @@ void Referee::saw(const std::vector<world::Sweep>& sweeps, const world::Pose& mo
 }
 
 void Referee::passes(world::Vec2 from, world::Vec2 to) {
+  if (plane_m_ <= 0.0) return;  // nobody asks: looked_through
   const double far_m = world::length(to - from);
+  const world::Vec2 step = kMapCell_m / far_m * (to - from);
   const double until_m = std::min(far_m - kBefore_m, kThrough_m);
+  world::Vec2 at = from;
   for (double m = kMapCell_m; m < until_m; m += kMapCell_m) {
-    const double part = m / far_m;
-    Met* met = met_at(from.x + part * (to.x - from.x), from.y + part * (to.y - from.y));
-    if (met != nullptr) ++met->through;
+    at = at + step;
+    const std::size_t cell = map_cell(at.x, at.y);
+    if (cell != kNowhere && through_[cell] < kThrough) ++through_[cell];
   }
 }
 
@@ -139,8 +145,8 @@ bool Referee::looked_through(int thing, const world::Pose& pose, double at_s) {
   if (plane_m_ <= 0.0) return false;  // a lidar's beams go over what is low
   const auto touched = places_touched(thing, pose, at_s, kUnderIt_m);
   return !touched.empty() && std::ranges::all_of(touched, [this](const world::Vec2& at) {
-    const Met* met = met_at(at.x, at.y);
-    return met != nullptr && met->through >= kThrough;
+    const std::size_t cell = map_cell(at.x, at.y);
+    return cell != kNowhere && through_[cell] >= kThrough;
   });
 }
 
@@ -441,8 +447,8 @@ std::string Referee::cause_of(const base::Obstacle& o, const world::Pose& there,
   Met last;
   for (int dy = -1; dy <= 1; ++dy) {
     for (int dx = -1; dx <= 1; ++dx) {
-      const Met* met = met_at(there.x_m + dx * kMapCell_m, there.y_m + dy * kMapCell_m);
-      if (met != nullptr && met->at_s > last.at_s) last = *met;
+      const std::size_t cell = map_cell(there.x_m + dx * kMapCell_m, there.y_m + dy * kMapCell_m);
+      if (cell != kNowhere && met_[cell].at_s > last.at_s) last = met_[cell];
     }
   }
   return std::string(word_of(last.cause));

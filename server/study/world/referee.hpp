@@ -68,7 +68,6 @@ class Referee {
   struct Met {
     float at_s = -1e9F;
     sim::world::Cause cause = sim::world::Cause::Nothing;
-    std::uint32_t through = 0;  ///< beams from nearby that went on, since one met a thing there
   };
 
   void judge(const sim::world::Witness::Seen& seen);
@@ -97,7 +96,8 @@ class Referee {
   std::string cause_of(const base::Obstacle& obstacle, const sim::world::Pose& there,
                        bool& needless);
   double room_m(int thing) const;
-  Met* met_at(double x_m, double y_m);
+  /// Number of the map's cell; kNowhere: outside.
+  static std::size_t map_cell(double x_m, double y_m) noexcept;
 
   const sim::Surroundings& around_;
   const nav::sense::ProtectParams brakes_;
@@ -110,7 +110,9 @@ class Referee {
   std::vector<std::size_t> beams_;           ///< that met it
   /// Of each thing that stands: the cells of kMapCell_m where beams met it, and when first.
   std::vector<std::map<std::pair<int, int>, double>> places_;
-  std::vector<Met> met_;
+  std::vector<Met> met_;  ///< of each cell of the map
+  /// Beams from nearby that went on, since one met a thing there; no more than are asked for.
+  std::vector<std::uint8_t> through_;
   std::size_t hard_ = 0;
   std::size_t soft_ = 0;
   std::size_t soft_before_ = 0;
