@@ -138,14 +138,17 @@ step_unit() {
 
 step_api() { run_ctest "$build" api "$logs/api"; }
 
-# in_pairs NAME…: command tests that mostly watch a robot drive, two at a time; each output in one piece.
-in_pairs() {
+# side_by_side NAME…: command tests that mostly watch a robot drive, each of which takes a third of a
+# core; each output in one piece. A server's processor may be somebody else's for seconds, so that a robot
+# stops and says so: there what fails once is tried once more, which is told.
+side_by_side() {
   local code=0 name
+  [ "${CI:-}" != true ] || local -x SECOND_TRY=yes
   export -f ordinary say
   export root build logs
   # shellcheck disable=SC2016
-  printf '%s\0' "$@" | xargs -0 -n 1 -P 2 bash -euo pipefail -c \
-    'ordinary python3 "$root/tests/command/$1_test.py" >"$logs/command-$1.log" 2>&1' pair || code=$?
+  printf '%s\0' "$@" | xargs -0 -n 1 -P $((jobs + 1)) bash -euo pipefail -c \
+    'ordinary python3 "$root/tests/command/$1_test.py" >"$logs/command-$1.log" 2>&1' beside || code=$?
   for name in "$@"; do cat "$logs/command-$name.log"; done
   return "$code"
 }
@@ -153,11 +156,12 @@ in_pairs() {
 step_command() {
   local code=0 name
   "$root/tests/command/packages_test" || code=$?
-  for name in decode arguments run control ntrip power_cut stop storage study drill gpsd memory tls abuse secrets peers lan place; do
+  for name in decode arguments run control ntrip power_cut stop storage study drill gpsd memory tls abuse secrets peers lan; do
     ordinary python3 "$root/tests/command/${name}_test.py" || code=$?
   done
   # The longest first.
-  in_pairs program rows see marks known_places tag_dock resume learned bad_sight solid_map map || code=$?
+  side_by_side program rows see marks place known_places tag_dock resume learned bad_sight solid_map map ||
+    code=$?
   ordinary python3 "$root/tests/soak/kills" --count 25 || code=$?
   return "$code"
 }
@@ -171,7 +175,17 @@ step_real() {
   return "$code"
 }
 
-step_can() { "$root/tests/can/run"; }
+# The kernel within a process is slow where the processor is not its own: once more, and told.
+step_can() {
+  local code=0
+  "$root/tests/can/run" >"$logs/can-first.log" 2>&1 || code=$?
+  if [ "$code" = 0 ] || [ "${CI:-}" != true ]; then
+    cat "$logs/can-first.log"
+    return "$code"
+  fi
+  sed 's/^ok - /# ok - /; s/^not ok - /again - /' "$logs/can-first.log"
+  "$root/tests/can/run"
+}
 
 step_page() {
   local code=0 results=$logs/playwright.json

@@ -249,18 +249,23 @@ def said_by(explain):
 
 def run_cases(cases, explain=None):
     """Runs functions in order; a docstring is the case's name. @param explain lines that tell how things
-    stood when a case failed, or none. @return the exit code."""
-    failed = 0
-    for case in cases:
-        name = " ".join((case.__doc__ or case.__name__).split())
-        begin = time.monotonic()
-        try:
-            case()
-            print(f"ok - {name} ({time.monotonic() - begin:.1f} s)", flush=True)
-        except Exception as error:  # any way to fail is a failure of this case
-            failed += 1
-            cause = " ".join(str(error).split()) or type(error).__name__
-            print(f"not ok - {name}: {cause}", flush=True)
-            for line in said_by(explain):
-                print(f"# {line}", flush=True)
-    return 1 if failed else 0
+    stood when a case failed, or none. With SECOND_TRY=yes a case that failed is tried once more, and that is
+    told. @return the exit code."""
+    tries = 2 if os.environ.get("SECOND_TRY") == "yes" else 1
+    return 0 if all([any(passes(case, explain, left > 1) for left in range(tries, 0, -1)) for case in cases]) else 1
+
+
+def passes(case, explain, again):
+    """@param again whether it will be tried once more, if it fails."""
+    name = " ".join((case.__doc__ or case.__name__).split())
+    begin = time.monotonic()
+    try:
+        case()
+        print(f"ok - {name} ({time.monotonic() - begin:.1f} s)", flush=True)
+        return True
+    except Exception as error:  # any way to fail is a failure of this case
+        cause = " ".join(str(error).split()) or type(error).__name__
+        print(f"{'again' if again else 'not ok'} - {name}: {cause}", flush=True)
+        for line in said_by(explain):
+            print(f"# {line}", flush=True)
+    return False
