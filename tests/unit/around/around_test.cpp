@@ -161,6 +161,49 @@ TEST(AroundTest, WhoStandsNearerThanTheLeastMayLeave) {
   EXPECT_TRUE(a.path[1].reverse) << "turning on the spot would touch";
 }
 
+//  ▓▓▓▓▓▓▓▓▓▓▓▓▓ ← so near that a corner comes within 11 cm while it turns, where 12 are asked for
+//       ▭           ▮
+//  ▓▓▓▓▓▓▓▓▓▓▓▓▓    ▮ ← further on the body passes between two posts, or does not
+Scene between_walls(double wall_m, double post_m) {
+  Scene s(Known::Free, 0.02, 8.0);
+  s.box(wall_m, -2.0, wall_m + 0.1, 2.0);
+  s.box(-wall_m - 0.1, -2.0, -wall_m, 2.0);
+  for (const double y : {-0.84, 0.8}) {
+    s.box(post_m, y, wall_m, y + 0.04);
+    s.box(-wall_m, y, -post_m, y + 0.04);
+  }
+  return s;
+}
+
+TEST(AroundTest, ATurnOnTheSpotMayComeNearerThanWhatIsDriven) {
+  // Given a body whose corners are 64 cm from its middle between walls at 76 cm,
+  const Scene s = between_walls(0.76, 0.56);
+  const Answer a = ask(s, along_x(), 0.01);
+  // when it turns to drive out along them, then it comes nearer than the least, by 3 cm at most,
+  ASSERT_EQ(a.found, Found::Way) << sentence(a.why);
+  EXPECT_TRUE(a.path[1].pivot);
+  double turning = 1.0;
+  double driving = 1.0;
+  for (const Place& p : a.path) {
+    double& nearest = p.pivot ? turning : driving;
+    nearest = std::min(nearest, tests::clearance_of(s.patch, along_x().body, p.pose));
+  }
+  EXPECT_LT(turning, 0.123);
+  EXPECT_GT(turning, 0.09);
+  // and nowhere else.
+  EXPECT_GE(driving, 0.12);
+}
+
+TEST(AroundTest, WhatIsDrivenAfterTheTurnKeepsItsLeast) {
+  // 13 cm on both sides to the middles of what stands there, which may lie a cell's half nearer.
+  const Answer a = ask(between_walls(0.76, 0.52), along_x());
+  EXPECT_EQ(a.found, Found::None);
+}
+
+TEST(AroundTest, ATurnThatWouldComeNearerByMoreIsNone) {
+  EXPECT_EQ(ask(between_walls(0.72, 0.6), along_x()).found, Found::None);
+}
+
 TEST(AroundTest, WhoStandsInSomethingIsToldSo) {
   Scene s;
   s.pole(0.2, 0.1, 0.1);
