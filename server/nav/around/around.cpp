@@ -187,7 +187,7 @@ Ended Planner::Impl::try_onwards(const Question& q, Wanted& w, const Price& pric
 }
 
 void Planner::Impl::answer(const sense::Patch& patch, const Question& q, Answer& a) {
-  trace.lay(q.pose, pieces, q.body.reach_m(), a.path);
+  trace.lay(q.pose, pieces, a.path);
   const bool whole = search.target() != Search::kNone;
   a.found = whole ? Found::Way : Found::Part;
   a.why = whole ? Why::None : Why::Unseen;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 
 namespace roverd::nav::around {
 
@@ -15,21 +16,6 @@ constexpr float kOther = 1.17F;          // elsewhere a metre costs this
 constexpr float kNear = 1.5F;            // more, where a thing is touched almost
 constexpr float kBucket_m = 0.05F;
 constexpr std::size_t kBuckets = 2400;
-
-/// Between the middles of four cells.
-float between(const std::vector<float>& v, std::int32_t n, double fx, double fy) noexcept {
-  fx = std::clamp(fx - 0.5, 0.0, n - 1.001);
-  fy = std::clamp(fy - 0.5, 0.0, n - 1.001);
-  const auto ix = static_cast<std::int32_t>(fx);
-  const auto iy = static_cast<std::int32_t>(fy);
-  const auto tx = static_cast<float>(fx - ix);
-  const auto ty = static_cast<float>(fy - iy);
-  const float* a = v.data() + static_cast<std::size_t>(iy) * static_cast<std::size_t>(n) + ix;
-  const float* b = a + n;
-  const float low = a[0] + tx * (a[1] - a[0]);
-  const float high = b[0] + tx * (b[1] - b[0]);
-  return low + ty * (high - low);
-}
 
 }  // namespace
 
@@ -56,20 +42,23 @@ bool Field::inside(double x, double y, double margin_m) const noexcept {
          y <= y0_m_ + size - margin_m;
 }
 
-float Field::clear_m(double x, double y) const noexcept {
-  const double fx = (x - x0_m_) * per_cell_;
-  const double fy = (y - y0_m_) * per_cell_;
-  if (fx < 0.0 || fy < 0.0 || fx >= side_ || fy >= side_) return -1.0F;
-  return between(clear_, side_, fx, fy);
-}
-
-float Field::room_m(double x, double y) const noexcept {
-  return between(room_, n_, (x - x0_m_) * per_coarse_, (y - y0_m_) * per_coarse_);
-}
-
 bool Field::unseen(double x, double y) const noexcept {
   const std::size_t i = coarse(x, y);
   return i == kNowhere || unseen_[i] != 0;
+}
+
+bool Field::any_unseen(Vec2 low, Vec2 high) const noexcept {
+  if (!inside(low.x, low.y, 0.0) || !inside(high.x, high.y, 0.0)) return true;
+  const auto n = static_cast<std::size_t>(n_);
+  const auto part = [&](double v, double v0) {
+    return std::min(n - 1, static_cast<std::size_t>((v - v0) * per_coarse_));
+  };
+  const std::size_t from = part(low.x, x0_m_);
+  const std::size_t size = part(high.x, x0_m_) - from + 1;
+  for (std::size_t y = part(low.y, y0_m_); y <= part(high.y, y0_m_); ++y) {
+    if (std::memchr(unseen_.data() + y * n + from, 1, size) != nullptr) return true;
+  }
+  return false;
 }
 
 void Field::mark_unseen(const sense::Patch& patch, const Question& q) {

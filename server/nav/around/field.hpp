@@ -7,6 +7,7 @@
 //
 // Memory is kept from one question to the next. Frame O, metres.
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -33,15 +34,24 @@ class Field {
   void lay(const sense::Patch& patch, const Question& q, const Lane& lane);
 
   /// To the nearest thing's middle; outside of the window −1: nobody goes there.
-  float clear_m(double x, double y) const noexcept;
+  float clear_m(double x, double y) const noexcept {
+    const double fx = (x - x0_m_) * per_cell_;
+    const double fy = (y - y0_m_) * per_cell_;
+    if (fx < 0.0 || fy < 0.0 || fx >= side_ || fy >= side_) return -1.0F;
+    return between(clear_, side_, fx, fy);
+  }
   /// Room to corridor and fence, negative outside.
-  float room_m(double x, double y) const noexcept;
+  float room_m(double x, double y) const noexcept {
+    return between(room_, n_, (x - x0_m_) * per_coarse_, (y - y0_m_) * per_coarse_);
+  }
   /// What a metre costs here, at least 1.
   float price(double x, double y) const noexcept {
     const std::size_t i = coarse(x, y);
     return i == kNowhere ? 1.0F : std::max(1.0F, price_[i]);
   }
   bool unseen(double x, double y) const noexcept;
+  /// Whether somewhere between these corners; true where they do not lie in the window.
+  bool any_unseen(Vec2 low, Vec2 high) const noexcept;
 
   /// A metre's price in each coarse cell, 0 where the body does not fit whatever its heading.
   /// @param inner_m radius of the largest circle about the origin within the body. @param least_m
@@ -81,6 +91,20 @@ class Field {
     if (x < x0_m_ || y < y0_m_ || ix >= n_ || iy >= n_) return kNowhere;
     return static_cast<std::size_t>(iy) * static_cast<std::size_t>(n_) +
            static_cast<std::size_t>(ix);
+  }
+  /// Between the middles of four cells.
+  static float between(const std::vector<float>& v, std::int32_t n, double fx, double fy) noexcept {
+    fx = std::clamp(fx - 0.5, 0.0, n - 1.001);
+    fy = std::clamp(fy - 0.5, 0.0, n - 1.001);
+    const auto ix = static_cast<std::int32_t>(fx);
+    const auto iy = static_cast<std::int32_t>(fy);
+    const auto tx = static_cast<float>(fx - ix);
+    const auto ty = static_cast<float>(fy - iy);
+    const float* a = v.data() + static_cast<std::size_t>(iy) * static_cast<std::size_t>(n) + ix;
+    const float* b = a + n;
+    const float low = a[0] + tx * (a[1] - a[0]);
+    const float high = b[0] + tx * (b[1] - b[0]);
+    return low + ty * (high - low);
   }
   Vec2 middle(std::int32_t ix, std::int32_t iy) const noexcept {
     return {x0_m_ + (ix + 0.5) * coarse_m_, y0_m_ + (iy + 0.5) * coarse_m_};

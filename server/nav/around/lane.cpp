@@ -85,7 +85,7 @@ Beside Lane::beside(Vec2 p, std::size_t i) const noexcept {
   const Vec2 d = p - a.at;
   const double t = std::clamp(dot(d, e) / dot(e, e), 0.0, 1.0);
   const Vec2 off = d - t * e;
-  const double distance = std::hypot(off.x, off.y);
+  const double distance = std::sqrt(dot(off, off));
   return {a.along_m + t * (b.along_m - a.along_m), cross(e, d) < 0.0 ? -distance : distance,
           distance};
 }

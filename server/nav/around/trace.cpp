@@ -16,7 +16,9 @@ constexpr double kTurns_rad = base::kPi / 18.0;
 bool over_unseen(const sense::Patch& patch, const Question& q, const Field& field,
                  const Pose2& pose) {
   const Pose2 bo = sense::inverse(pose);
-  const double reach = q.body.reach_m();
+  const double reach = q.body.reach_m() + patch.cell_m;
+  const Vec2 at{pose.x_m, pose.y_m};
+  if (!field.any_unseen(at - Vec2{reach, reach}, at + Vec2{reach, reach})) return false;
   const auto cell = [&](double v) {
     return static_cast<std::int32_t>(std::floor(v / patch.cell_m));
   };
@@ -34,9 +36,7 @@ bool over_unseen(const sense::Patch& patch, const Question& q, const Field& fiel
 
 }  // namespace
 
-void Trace::lay(const Pose2& start, std::span<const Piece> pieces, double reach_m,
-                std::vector<Place>& path) {
-  static_cast<void>(reach_m);
+void Trace::lay(const Pose2& start, std::span<const Piece> pieces, std::vector<Place>& path) {
   path.clear();
   path.push_back({start, false, false, 0.0});
   Pose2 at = start;

@@ -13,8 +13,7 @@ namespace roverd::nav::around {
 class Trace {
  public:
   /// @param path begins with `start`
-  static void lay(const Pose2& start, std::span<const Piece> pieces, double reach_m,
-                  std::vector<Place>& path);
+  static void lay(const Pose2& start, std::span<const Piece> pieces, std::vector<Place>& path);
   /// How many of them, from the first on, keep the body over what was seen, and end with a stop
   /// from which it can be looked further. All: path.size(). @param ahead_too else only what is
   /// driven backwards counts

@@ -1,6 +1,7 @@
 // The rolling grid and the polar picture of it, fed by cast rays.
 #include "nav/sense/grid.hpp"
 
+#include <array>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -292,27 +293,43 @@ TEST(GridTest, RunLengthsGiveThePatchBack) {
   EXPECT_LT(runs.size(), 6000U) << "of 40,000 cells";
 }
 
+/// By trying all cells.
+double clearance_at(const Patch& patch, int x, int y, bool unknown_too, double max_m) {
+  double best_m = max_m;
+  for (int v = 0; v < patch.side; ++v) {
+    for (int u = 0; u < patch.side; ++u) {
+      const Known k = patch.at(u, v).known;
+      if (k == Known::Free || (k == Known::Unknown && !unknown_too)) continue;
+      best_m = std::min(best_m, patch.cell_m * std::hypot(u - x, v - y));
+    }
+  }
+  return best_m;
+}
+
 TEST(GridTest, ClearanceIsTheDistanceThatTryingAllCellsGives) {
-  Patch patch;
-  patch.cell_m = 0.1;
-  patch.side = 40;
-  patch.cells.resize(1600);
-  std::mt19937 random(5);
-  for (auto& c : patch.cells) c.known = Known::Free;
-  for (int i = 0; i < 12; ++i)
-    patch.cells[random() % 1600].known = i % 2 == 0 ? Known::Occupied : Known::Drop;
-  std::vector<float> far;
-  clearance(patch, false, 1.0F, far);
-  for (int y = 0; y < 40; ++y) {
-    for (int x = 0; x < 40; ++x) {
-      double best = 1.0;
-      for (int v = 0; v < 40; ++v) {
-        for (int u = 0; u < 40; ++u) {
-          if (patch.at(u, v).known != Known::Free)
-            best = std::min(best, 0.1 * std::hypot(u - x, v - y));
+  // Given nothing at all, few things, many things and everything taken,
+  for (const int things : {0, 1, 12, 300, 1600}) {
+    Patch patch;
+    patch.cell_m = 0.1;
+    patch.side = 40;
+    patch.cells.resize(1600);
+    std::mt19937 random(5);
+    for (auto& c : patch.cells) c.known = things == 1600 ? Known::Occupied : Known::Free;
+    for (int i = 0; i < things % 1600; ++i) {
+      constexpr std::array<Known, 3> kKinds{Known::Occupied, Known::Drop, Known::Unknown};
+      patch.cells[random() % 1600].known = kKinds[static_cast<std::size_t>(i) % 3];
+    }
+    // when it is asked for near and far, then each cell has its own.
+    std::vector<float> far;
+    for (const double max_m : {0.25, 1.0, 100.0}) {
+      for (const bool unknown_too : {false, true}) {
+        clearance(patch, unknown_too, static_cast<float>(max_m), far);
+        for (int i = 0; i < 1600; ++i) {
+          ASSERT_NEAR(static_cast<double>(far[static_cast<std::size_t>(i)]),
+                      clearance_at(patch, i % 40, i / 40, unknown_too, max_m), 1e-5)
+              << things << " things, cell " << i << ", " << max_m << " m";
         }
       }
-      ASSERT_NEAR(static_cast<double>(far[static_cast<std::size_t>(40 * y + x)]), best, 1e-5);
     }
   }
 }
