@@ -9,6 +9,8 @@ namespace {
 
 /// A stamp that is so far off the arrivals was set.
 constexpr double kJump_s = 0.5;
+/// No frame takes so long.
+constexpr double kPatience_s = 5.0;
 /// An image does not wait for longer.
 constexpr double kOld_s = 1.0;
 /// A sequence that goes on by more began anew.
@@ -40,13 +42,16 @@ Driver::Driver(std::string name, const Params& params, MakeLink make_link,
           {std::move(name), "waiting for a frame", params.retry_first_s, params.retry_max_s},
           std::move(make_link), [this](Bytes b, Time t) { on_bytes(b, t); },
           [this] {
-            // A frame that is still coming in is not cut by its length.
+            // Not a frame that is still coming in: it is not over because it takes long.
             if (!port_.is_open()) decoder_.forget();
             delay_.forget();
             last_ns_.reset();
             last_sequence_.reset();
           },
-          std::move(on_measurement)) {}
+          std::move(on_measurement)) {
+  port_.on_opening(
+      [this](link::ByteLink& link, Time) { link.on_peer = [this] { decoder_.forget(); }; });
+}
 
 void Driver::start(Time now) {
   port_.start(now);
@@ -59,7 +64,11 @@ void Driver::restart(Time now) {
 
 void Driver::tick(Time now) {
   const double silent_s = base::seconds(now - port_.last_heard());
-  if (base::seconds(now - last_bytes_) > params_.silent_after_s) decoder_.forget();
+  // Where a peer goes in the middle of a frame and its link does not tell.
+  if (base::seconds(now - std::max(port_.last_heard(), forgot_)) > kPatience_s) {
+    decoder_.forget();
+    forgot_ = now;
+  }
   if (port_.is_open() && params_.silent_reopen_s > 0.0 && silent_s > params_.silent_reopen_s) {
     port_.fail("no frame", now);
   } else if (port_.is_up() && silent_s > params_.silent_after_s) {
@@ -69,7 +78,6 @@ void Driver::tick(Time now) {
 }
 
 void Driver::on_bytes(Bytes bytes, Time stamp) {
-  last_bytes_ = stamp;
   decoder_.feed(bytes, [&](const Frame& frame) { on_frame(frame, stamp); });
   count_refused();
 }

@@ -54,7 +54,7 @@ class Driver {
   Decoder decoder_;
   Eye eye_;
   base::LeastDelay delay_;
-  Time last_bytes_{};
+  Time forgot_{};  ///< what had come of a frame, because it took too long
   std::optional<std::int64_t> last_ns_;
   std::optional<std::uint32_t> last_sequence_;
   std::uint64_t count_ = 0;

@@ -62,6 +62,9 @@ class ByteLink {
 
   std::function<void(Bytes, Time)> on_bytes;                 ///< never empty spans
   std::function<void(const std::string& reason)> on_closed;  ///< lost; not after close()
+  /// Another peer than before speaks from now on: what comes begins anew. Of links that stay open
+  /// while their peers change; the first one is told as well.
+  std::function<void()> on_peer;
   /// Links that play a recording: what the recording program sent then. Others never call it.
   std::function<void(Bytes, Time)> on_sent;
 

@@ -122,6 +122,9 @@ RecordedByteLink::RecordedByteLink(std::unique_ptr<ByteLink> inner, std::unique_
     writer_->put({t, false, {bytes.begin(), bytes.end()}, inner_->ends()});
     if (on_bytes) on_bytes(bytes, t);
   };
+  inner_->on_peer = [this] {
+    if (on_peer) on_peer();
+  };
   inner_->on_closed = [this](const std::string& reason) {
     if (on_closed) on_closed(reason);
   };

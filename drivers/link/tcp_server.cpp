@@ -88,6 +88,7 @@ void TcpServer::accept() {
           boost::system::error_code ignored;
           socket.set_option(tcp::no_delay(true), ignored);
           clients_.push_back(std::make_shared<Client>(std::move(socket)));
+          if (on_peer) on_peer();
           read(clients_.back());
         }
         accept();

@@ -25,7 +25,7 @@ using namespace std::chrono_literals;
 using base::DriverPhase;
 
 struct OnWire : ::testing::Test {
-  OnWire() {
+  explicit OnWire(const Params& params = {}) : params_(params) {
     EXPECT_TRUE(wire.b->open());
     driver.start(now);
   }
@@ -41,12 +41,12 @@ struct OnWire : ::testing::Test {
     return driver.status(now).detail->facts.at(key);
   }
 
+  const Params params_;
   Time now{std::chrono::hours(1)};
   link::MemoryBytePair wire = link::memory_byte_pair();
   link::MemoryByteLink* ours = wire.a.get();
   std::vector<std::shared_ptr<const base::Sight>> sights;
-  Driver driver{"camera",
-                {},
+  Driver driver{"camera", params_,
                 [this] { return base::Result<std::unique_ptr<link::ByteLink>>(std::move(wire.a)); },
                 [](const base::Measurement&) {},
                 [this](std::shared_ptr<const base::Sight> s) { sights.push_back(std::move(s)); }};
@@ -151,12 +151,56 @@ TEST_F(OnWire, AFrameThatComesSlowerThanSilenceIsLetByWhole) {
   EXPECT_EQ(counted("more than 1000000 points"), 1U);
 }
 
-TEST_F(OnWire, AFrameThatWasCutOffDoesNotSwallowTheNextOnes) {
-  // Given half a frame, and then nothing for longer than a camera may be silent,
-  const Blob half = cloud_frame(header_of(1), std::vector<float>(30'000, 1.0F));
-  send({half.begin(), half.begin() + static_cast<std::ptrdiff_t>(half.size() / 2)});
-  for (int i = 0; i < 4; ++i) driver.tick(now += 100ms);
-  // when whole frames come, then the first of them is used.
+/// What a camera that ends in the middle of a frame has sent of it.
+Blob half_a_frame(std::size_t points) {
+  const Blob whole = cloud_frame(header_of(1), std::vector<float>(3 * points, 1.0F));
+  return {whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(whole.size() / 2)};
+}
+
+TEST_F(OnWire, APauseWithinAFrameLosesNothing) {
+  const Blob first = half_a_frame(10'000);
+  const Blob whole = cloud_frame(header_of(1), std::vector<float>(30'000, 1.0F));
+  send(first);
+  for (int i = 0; i < 20; ++i) driver.tick(now += 100ms);
+  send({whole.begin() + static_cast<std::ptrdiff_t>(first.size()), whole.end()});
+  EXPECT_EQ(sights.size(), 1U);
+  EXPECT_EQ(driver.status(now).refused, 0U);
+}
+
+TEST_F(OnWire, AnotherPeerBeginsAnewAtOnce) {
+  for (const std::uint32_t points : {10'000U, 1'200'000U}) {  // one to be used, one to be let by
+    sights.clear();
+    send(half_a_frame(points));
+    ours->on_peer();
+    send(cloud_frame(header_of(points), {1.0F, 0.0F, 0.0F}));
+    EXPECT_EQ(sights.size(), 1U) << points;
+  }
+}
+
+/// Its link is never opened again for its silence: as in a replay.
+struct OnPatientWire : OnWire {
+  OnPatientWire()
+      : OnWire([] {
+          Params p;
+          p.silent_reopen_s = 0.0;
+          return p;
+        }()) {}
+};
+
+TEST_F(OnPatientWire, WhereNobodyTellsOfItACutFrameSwallowsFiveSeconds) {
+  send(half_a_frame(900'000));
+  std::uint32_t n = 2;
+  for (; sights.empty() && n < 200; ++n) {
+    now += 50ms;
+    driver.tick(now);
+    send(cloud_frame(header_of(n, 1'000'000'000 + n * 50'000'000LL), {1.0F, 0.0F, 0.0F}));
+  }
+  EXPECT_NEAR(n * 0.05, 5.1, 0.1);
+}
+
+TEST_F(OnWire, AClosedLinkEndsTheFrame) {
+  send(half_a_frame(10'000));
+  driver.restart(now);
   send(cloud_frame(header_of(2, 2'000'000'000), {1.0F, 0.0F, 0.0F}));
   EXPECT_EQ(sights.size(), 1U);
 }

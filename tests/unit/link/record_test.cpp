@@ -273,6 +273,7 @@ TEST_F(RecordedFrames, CountsWhatIsInTheFile) {
 TEST(RecordedBytes, BothDirectionsPassAndAreWritten) {
   const TempFolder folder;
   auto wire = memory_byte_pair();
+  MemoryByteLink* const inner = wire.a.get();
   auto made = RecordedByteLink::create(std::move(wire.a), folder.file("gnss.rec"), options());
   ASSERT_TRUE(made) << made.error().detail;
   auto link = std::move(*made);
@@ -284,6 +285,9 @@ TEST(RecordedBytes, BothDirectionsPassAndAreWritten) {
   wire.b->write(bytes_of("$GNGGA\r\n"));
   EXPECT_EQ(link->write(bytes_of("rtcm")), SendResult::Sent);
   EXPECT_EQ(heard, "$GNGGA\r\n");
+  link->on_peer = [&] { heard = "another"; };
+  inner->on_peer();
+  EXPECT_EQ(heard, "another");
   link.reset();
 
   const std::string file = read_file(folder.file("gnss.rec"));

@@ -57,6 +57,7 @@ TEST_F(Tcp, AServerForOneTurnsTheSecondAwayAndTakesItWhenTheFirstIsGone) {
   ASSERT_TRUE(one.open());
   std::string heard;
   one.on_bytes = [&](Bytes b, Time) { heard += text_of(b); };
+  one.on_peer = [&] { heard += '|'; };
   TcpLink first(io, "127.0.0.1", one.port());
   ASSERT_TRUE(first.open());
   ASSERT_TRUE(run_until(io, [&] { return first.is_connected() && one.clients() == 1; }));
@@ -67,13 +68,13 @@ TEST_F(Tcp, AServerForOneTurnsTheSecondAwayAndTakesItWhenTheFirstIsGone) {
   ASSERT_TRUE(run_until(io, [&] { return lost; }));
   EXPECT_EQ(one.strangers(), 1U);
   first.write(bytes_of("first"));
-  ASSERT_TRUE(run_until(io, [&] { return heard == "first"; }));
+  ASSERT_TRUE(run_until(io, [&] { return heard == "|first"; }));
   first.close();
   ASSERT_TRUE(run_until(io, [&] { return one.clients() == 0; }));
   ASSERT_TRUE(second.open());
   ASSERT_TRUE(run_until(io, [&] { return second.is_connected() && one.clients() == 1; }));
   second.write(bytes_of(", second"));
-  ASSERT_TRUE(run_until(io, [&] { return heard == "first, second"; }));
+  ASSERT_TRUE(run_until(io, [&] { return heard == "|first|, second"; }));
 }
 
 TEST_F(Tcp, ALostServerIsNoticedAndTheLinkOpensAgain) {
