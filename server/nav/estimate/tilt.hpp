@@ -41,7 +41,7 @@ class Tilt {
     const double up = sample.accel_mps2->up;
     const double force = std::sqrt(ahead * ahead + left * left + up * up);
     if (force < 8.0 || force > 11.6) return;  // a blow is not gravity
-    const bool anew = !known_ || !fresh(*known_, sample.stamp);
+    const bool anew = !known_ || base::seconds(sample.stamp - *known_) > kFresh_s;
     const double dt_s = weighed_ ? base::seconds(sample.stamp - *weighed_) : Gyro::kGap_s;
     known_ = weighed_ = sample.stamp;
     const double after_s = std::clamp(dt_s, 0.0, Gyro::kGap_s);  // one sample is not many
@@ -50,10 +50,9 @@ class Tilt {
     pitch_rad_ += part * (std::atan2(ahead, std::hypot(left, up)) - pitch_rad_);
   }
 
-  /// Worked out by a device. One that is a little older than the last is none; by much, its clock
-  /// began anew.
+  /// Worked out by a device. One that is older than the last is none.
   void put(const base::Attitude& attitude) noexcept {
-    if (told_ && attitude.stamp < *told_ && fresh(attitude.stamp, *told_)) return;
+    if (told_ && attitude.stamp < *told_) return;
     told_ = attitude.stamp;
     told_roll_rad_ = attitude.roll_rad;
     told_pitch_rad_ = attitude.pitch_rad;
@@ -61,10 +60,10 @@ class Tilt {
 
   /// Empty: nothing tells, or not any more.
   std::optional<base::Attitude> at(base::Time now) const noexcept {
-    if (told_ && fresh(*told_, now)) {
+    if (told_ && base::seconds(now - *told_) < kFresh_s) {
       return base::Attitude{*told_, told_roll_rad_, told_pitch_rad_};
     }
-    if (!known_ || !fresh(*known_, now)) return std::nullopt;
+    if (!known_ || base::seconds(now - *known_) >= kFresh_s) return std::nullopt;
     return base::Attitude{*known_, roll_rad_, pitch_rad_};
   }
 
@@ -75,10 +74,6 @@ class Tilt {
   }
 
  private:
-  /// What is of the future would be believed for as long as that is away.
-  static bool fresh(base::Time then, base::Time now) noexcept {
-    return std::abs(base::seconds(now - then)) < kFresh_s;
-  }
   static double heading_radps(const base::BodyVector& rate, double roll_rad,
                               double pitch_rad) noexcept {
     const double roll = std::clamp(roll_rad, -kMost_rad, kMost_rad);

@@ -67,6 +67,8 @@ void Estimator::take(const base::Attitude& attitude) {
   if (!std::isfinite(attitude.roll_rad) || !std::isfinite(attitude.pitch_rad)) {
     return refuse(health_.inertial, Refusal::NotFinite);
   }
+  // It would be believed until then, and whatever comes meanwhile be older.
+  if (attitude.stamp > now_ + kFuture) return refuse(health_.inertial, Refusal::Stamp);
   tilt_.put(attitude);
 }
 

@@ -295,7 +295,8 @@ TEST(Estimator, RefusesAndCountsWhatCannotBe) {
   d.estimator.take(base::WheelTravel{now, 0.0, 0.0}, now);  // doubled stamp
   d.estimator.take(base::WheelTravel{now + milliseconds(2), 500.0, 500.0}, now);
   d.estimator.take(base::BaseMotion{now + milliseconds(3), {nan, 0.0}}, now);
-  EXPECT_EQ(d.estimator.health().rejected - rejected, 9u);
+  d.estimator.take(base::Attitude{now + std::chrono::hours(1), 0.0, 0.3}, now);
+  EXPECT_EQ(d.estimator.health().rejected - rejected, 10u);
   EXPECT_EQ(before, d.estimator.belief().x);
 }
 

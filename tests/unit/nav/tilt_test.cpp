@@ -191,36 +191,6 @@ TEST(Tilt, AnOlderWordOfADeviceIsNone) {
   EXPECT_EQ(tilt.at(now)->pitch_rad, 0.2);
 }
 
-TEST(Tilt, AWordOfTheFutureIsNotBelievedUntilThen) {
-  // Given a device whose clock jumps an hour ahead for one word,
-  Tilt tilt;
-  base::Time now = base::Time{} + std::chrono::hours(1);
-  tilt.put(base::Attitude{now, 0.1, 0.2});
-  tilt.put(base::Attitude{now + std::chrono::hours(1), 0.3, 0.4});
-  EXPECT_FALSE(tilt.at(now)) << "nothing is known for now";
-  // when it goes on as before, then it is believed again.
-  now += std::chrono::milliseconds(20);
-  tilt.put(base::Attitude{now, 0.15, 0.25});
-  ASSERT_TRUE(tilt.at(now));
-  EXPECT_EQ(tilt.at(now)->roll_rad, 0.15);
-}
-
-TEST(Tilt, GravityOfTheFutureIsNotBelievedUntilThen) {
-  Tilt tilt;
-  const auto leans = [](base::Time stamp, double roll_rad) {
-    base::Inertial sample;
-    sample.stamp = stamp;
-    sample.accel_mps2 = {0.0, 9.81 * std::sin(roll_rad), 9.81 * std::cos(roll_rad)};
-    return sample;
-  };
-  base::Time now = base::Time{} + std::chrono::hours(1);
-  tilt.put(leans(now + std::chrono::hours(1), 0.3), 0.0, 0.0);
-  EXPECT_FALSE(tilt.at(now));
-  for (int i = 0; i < 10; ++i) tilt.put(leans(now += std::chrono::milliseconds(10), 0.1), 0.0, 0.0);
-  ASSERT_TRUE(tilt.at(now));
-  EXPECT_NEAR(tilt.at(now)->roll_rad, 0.1, 1e-6);
-}
-
 //   Straight up a slope of 15 degrees, tracks, satellites and compass well; the gyro turns.
 TEST(Tilt, AGyroThatLiesAboutATurnDoesNotTurnTheLean) {
   Drive d;
