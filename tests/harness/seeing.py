@@ -103,10 +103,13 @@ class SeeingRobot:
     def close(self):
         if self.control:
             self.control.close()
-        for program in (self.roverd, self.sim):
-            if program:
-                program.stop()
-        shutil.rmtree(self.scratch, ignore_errors=True)
+        try:
+            if self.roverd:
+                self.roverd.stop()
+        finally:
+            if self.sim:
+                self.sim.stop()
+            shutil.rmtree(self.scratch, ignore_errors=True)
 
     def truth(self):
         return self.control.ask({"get": "truth"})
