@@ -16,7 +16,6 @@ using base::Refusal;
 using base::seconds;
 using std::chrono::milliseconds;
 
-constexpr base::Duration kFuture = milliseconds(50);
 // Without odometry: how wrong the receiver's velocity is, how fast it grows old, and how fast a
 // robot may be of which nothing is known (1 sigma).
 constexpr double kCoastSpeed_mps = 0.15;
