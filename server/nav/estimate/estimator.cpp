@@ -14,7 +14,6 @@ namespace {
 using base::rad_from_deg;
 using base::Refusal;
 using base::seconds;
-using std::chrono::milliseconds;
 
 // Without odometry: how wrong the receiver's velocity is, how fast it grows old, and how fast a
 // robot may be of which nothing is known (1 sigma).

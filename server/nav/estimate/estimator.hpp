@@ -180,8 +180,8 @@ class Estimator {
   using Input = base::InputHealth;
   static constexpr base::Duration kOdometryGone = std::chrono::milliseconds(300);
   static constexpr base::Duration kGnssGone = std::chrono::milliseconds(2000);
-  static constexpr base::Duration kFuture =
-      std::chrono::milliseconds(50);              ///< stamps beyond are none
+  /// A stamp that lies farther ahead is none.
+  static constexpr base::Duration kFuture = std::chrono::milliseconds(50);
   static constexpr double kApproach_mps = 0.25;   ///< to a better fix class: slower than it steers
   static constexpr double kArrived_m = 0.02;      ///< at another source: no limit any more
   static constexpr double kTakeOver_m = 25.0;     ///< satellites after a map, farther off: a jump
