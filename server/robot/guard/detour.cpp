@@ -21,6 +21,7 @@ constexpr double kShorter = 0.8;
 constexpr double kArc_m = 0.25;
 constexpr double kTurn_radps = 0.4;
 constexpr double kElsewhere_m = 0.3;
+constexpr double kPassed_m = 0.8;  // farther it does not come before an answer is too old
 
 bool same_piece(const Place& a, const Place& b) noexcept {
   return a.reverse == b.reverse && !a.pivot && !b.pivot &&
@@ -32,14 +33,36 @@ base::EnuPoint place_in(const nav::sense::Pose2& odometry_in_local, const Place&
   return {at.x_m, at.y_m};
 }
 
+/// An answer begins where the robot was when it was asked for. The last place that lies behind it
+/// by now, of those that it would have driven without turning round.
+std::size_t passed(const AroundAnswer& answer, const nav::Vehicle& vehicle) {
+  const std::vector<Place>& path = answer.found.path;
+  const auto back = nav::sense::inverse(answer.asked->local);
+  std::size_t best = 0;
+  double least_m = kPassed_m;
+  double way_m = 0.0;
+  for (std::size_t i = 0; i < path.size() && way_m < kPassed_m; ++i) {
+    if (i > 0) {
+      if (path[i].pivot || path[i].reverse != path[1].reverse) break;
+      way_m += std::hypot(path[i].pose.x_m - path[i - 1].pose.x_m,
+                          path[i].pose.y_m - path[i - 1].pose.y_m);
+    }
+    const double far_m = base::distance_m(vehicle.at, place_in(back, path[i]));
+    if (far_m >= least_m) continue;
+    least_m = far_m;
+    best = i;
+  }
+  return path.size() < 2 ? 0 : std::min(best, path.size() - 2);
+}
+
 }  // namespace
 
-std::vector<nav::Vertex> way_of(const AroundAnswer& answer, double speed_mps) {
+std::vector<nav::Vertex> way_of(const AroundAnswer& answer, double speed_mps, std::size_t from) {
   const std::vector<Place>& path = answer.found.path;
   const auto back = nav::sense::inverse(answer.asked->local);
   std::vector<nav::Vertex> out;
   double since_m = 0.0;
-  for (std::size_t i = 1; i < path.size(); ++i) {
+  for (std::size_t i = from + 1; i < path.size(); ++i) {
     const Place& p = path[i];
     if (p.pivot) continue;
     const bool last = i + 1 == path.size();
@@ -134,7 +157,7 @@ Detour::Taken Detour::take(std::shared_ptr<const AroundAnswer> answer, const nav
   open_ = false;
   using nav::around::Found;
   if (answer->found.found != Found::Way && answer->found.found != Found::Part) return Taken::Left;
-  std::vector<nav::Vertex> way = way_of(*answer, speed_mps);
+  std::vector<nav::Vertex> way = way_of(*answer, speed_mps, passed(*answer, vehicle));
   const bool drove = drives();
   if (way.empty()) return drove && trip_.busy() ? Taken::Left : turn(std::move(answer), vehicle);
   if (drove && !turns_ && trip_.busy() && !worth(*answer, way)) return Taken::Left;

@@ -21,8 +21,8 @@
 namespace roverd::robot {
 
 /// The found way as a trip drives it, in the robot's frame; empty: it only turns on the spot.
-/// @param speed_mps at most
-std::vector<nav::Vertex> way_of(const AroundAnswer& answer, double speed_mps);
+/// @param speed_mps at most @param from number of the place that it is driven from
+std::vector<nav::Vertex> way_of(const AroundAnswer& answer, double speed_mps, std::size_t from = 0);
 
 class Detour {
  public:
