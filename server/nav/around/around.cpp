@@ -158,7 +158,7 @@ void Planner::Impl::plan(const sense::Patch& patch, const Question& q, Answer& a
                                    : kWheelPlay * q.kinematics.min_radius_m;
   w.expand = effort.expand;
   aim_onwards(w);
-  const Price price{&field, &body, q.body.reach_m()};
+  const Price price{&field, &body, q.body.reach_m(), q.keeps_ahead};
   Ended ended = search.run(w, price);
   a.expanded = search.expanded();
   if (ended != Ended::Found && !ahead.ends() && !w.onwards_m) {

@@ -72,6 +72,7 @@ struct Question {
 
   double least_m = 0.12;              ///< between the body and what stands there; 0.02 to 1
   double wanted_m = 0.30;             ///< nearer than that is driven only where it saves way
+  bool keeps_ahead = false;           ///< least_m ahead also where it stands nearer: it was refused
   bool through_unknown = false;       ///< at creep speed: a metre counts as unknown_cost of them
   bool back_through_unknown = false;  ///< and backwards; counts with through_unknown only
   double unknown_cost = 3.0;          ///< 1 to 10

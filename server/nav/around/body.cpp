@@ -181,16 +181,15 @@ bool Body::stands_as_at_start(const Stand& at, bool turns) const noexcept {
   });
 }
 
-bool Body::fits(const Stand& at) const noexcept {
+bool Body::fits(const Stand& at, bool as_at_start) const noexcept {
   if (!field_->inside(at.x_m, at.y_m, 0.0)) return false;
   if (circle_fits(at, about_, true)) return true;
   const double dx = at.x_m - start_.x_m;
   const double dy = at.y_m - start_.y_m;
   const double far_m2 = dx * dx + dy * dy;
-  const bool as_at_start = allowed_ && far_m2 < kAboutStart_m * kAboutStart_m &&
-                           (start_clear_m_ < sample_m_ + kSwings_m || start_room_m_ < kRoom_m);
-  return as_at_start ? stands_as_at_start(at, far_m2 < kTurnsHere_m * kTurnsHere_m)
-                     : stands(at, true);
+  const bool near = as_at_start && allowed_ && far_m2 < kAboutStart_m * kAboutStart_m &&
+                    (start_clear_m_ < sample_m_ + kSwings_m || start_room_m_ < kRoom_m);
+  return near ? stands_as_at_start(at, far_m2 < kTurnsHere_m * kTurnsHere_m) : stands(at, true);
 }
 
 /// Along the outline nothing comes nearer faster than one goes: what has more room than is asked

@@ -20,6 +20,7 @@ struct Price {
   const Field* field = nullptr;
   const Body* body = nullptr;
   double reach_m = 0.7;
+  bool keeps_ahead = false;  ///< as the question's
 
   float of(const Pose2& from, const Piece& piece) const noexcept {
     const int n = piece.steps(2.0 * Body::kApart_m, reach_m);
@@ -27,6 +28,7 @@ struct Price {
     const Pose2 step = piece.after({}, 1.0 / n);
     const double step_cos = std::cos(step.yaw_rad);
     const double step_sin = std::sin(step.yaw_rad);
+    const bool as_at_start = !keeps_ahead || piece.pivot() || piece.length_m < 0.0;
     Stand at{from};
     float sum = 0.0F;
     for (int i = 1; i <= n; ++i) {
@@ -35,7 +37,7 @@ struct Price {
       const double cos = at.cos;
       at.cos = cos * step_cos - at.sin * step_sin;
       at.sin = at.sin * step_cos + cos * step_sin;
-      if (!body->fits(at)) return Field::kNever;
+      if (!body->fits(at, as_at_start)) return Field::kNever;
       sum += field->price(at.x_m, at.y_m);
     }
     if (piece.pivot()) return kPivot_m + kTurn_m * static_cast<float>(std::abs(piece.turn_rad));

@@ -80,6 +80,8 @@ bool Robot::Impl::ask_around() {
   q.fence_margin_m = config->fence.margin_m;
   q.least_m = guard.side_m() + kTracking_m;
   q.wanted_m = std::max(q.least_m, kComfort_m);
+  // Asked in the middle of a turn, a corner may be nearer than what guards it lets drive on.
+  q.keeps_ahead = detour.stopped();
   q.through_unknown = guard.creeps();
   q.back_through_unknown = guard.creeps_back();
   q.before = detour.rest(asked->local);

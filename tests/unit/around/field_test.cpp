@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "base/angle.hpp"
+#include "nav/around/price.hpp"
 #include "scene.hpp"
 
 namespace roverd::nav::around {
@@ -61,6 +63,31 @@ TEST(FieldTest, WhatIsUnseenSomewhereInASquareIsSaidOfItAndOfNoOther) {
   }
   EXPECT_GT(seen, 300);
   EXPECT_GT(unseen, 300);
+}
+
+//   ▲ ▓   Along a wall, as near as a corner comes while it turns: 11 cm to its cells' middles,
+//   where ▭ ▓   14.4 are kept.
+TEST(PriceTest, WhoWasRefusedToDriveOnSoNearMayBackOffAndNotDriveOn) {
+  tests::Scene s(Known::Free, 0.02, 4.0);
+  s.box(0.5, -2.0, 0.7, 2.0);
+  Question q = tests::along_x();
+  q.pose.yaw_rad = base::rad_from_deg(90.0);
+  Lane lane;
+  lane.lay(q.route);
+  Field field;
+  field.lay(s.patch, q, lane);
+  Body body;
+  body.set(q.body, q.least_m, field);
+  field.price_all(q, body.inner_m(), body.least_m(), {});
+  body.allow_start(q.pose);
+  const Piece on{0.0, 0.1, 0.0};
+  const Piece back{0.0, -0.1, 0.0};
+  const Price first{&field, &body, q.body.reach_m(), false};
+  const Price refused{&field, &body, q.body.reach_m(), true};
+  EXPECT_LT(first.of(q.pose, on), Field::kNever);
+  EXPECT_EQ(refused.of(q.pose, on), Field::kNever);
+  EXPECT_LT(first.of(q.pose, back), Field::kNever);
+  EXPECT_LT(refused.of(q.pose, back), Field::kNever);
 }
 
 }  // namespace
