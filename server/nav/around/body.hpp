@@ -35,6 +35,7 @@ class Body {
   /// turn on the spot there by 3 cm nearer than least_m: it has stopped before something.
   void allow_start(const Pose2& start);
 
+  /// @param as_at_start with what allow_start allows
   bool fits(const Stand& at, bool as_at_start = true) const noexcept;
   bool fits(const Pose2& pose) const noexcept { return fits(Stand{pose}); }
   /// Of what stands there only, without borders and the allowance of the start.
