@@ -17,6 +17,11 @@ std::string centimetres(double m) {
   return std::to_string(std::lround(m * 100.0)) + " cm";
 }
 
+/// Of a way that is joined while driving: straight ahead.
+double lead_m(const Vehicle& v) noexcept {
+  return std::max(0.3, 0.6 * std::abs(v.speed_mps));
+}
+
 }  // namespace
 
 void Trip::reset() noexcept {
@@ -47,7 +52,9 @@ bool Trip::goes_on_ahead(const Vehicle& v, EnuPoint first) const noexcept {
   const double most = path_params_->vehicle.steered()
                           ? base::kPi / 2.0
                           : base::rad_from_deg(path_params_->pivot.angle_deg);
-  return off < most && base::distance_m(v.at, first) > 2.0 * std::abs(v.speed_mps);
+  // Nearer than where the lead ends, the way would come back to it.
+  const double least_m = std::max(2.0 * std::abs(v.speed_mps), 1.5 * lead_m(v));
+  return off < most && base::distance_m(v.at, first) > least_m;
 }
 
 void Trip::lay(const Vehicle& v, bool smoothly) {
@@ -57,16 +64,16 @@ void Trip::lay(const Vehicle& v, bool smoothly) {
   const Vertex& first = order_.way[next_];
   std::vector<Vertex> all;
   all.reserve(order_.way.size() - next_ + 2);
-  all.push_back({v.at, first.speed_mps, first.reverse, false, mission::Turn::Auto, 0.1});
+  const mission::Turn turn = order_.turns_first ? mission::Turn::Pivot : mission::Turn::Auto;
+  all.push_back({v.at, first.speed_mps, first.reverse, false, turn, 0.1});
   lead_ = 1;
   first_ = next_;
-  const bool joined = smoothly && goes_on_ahead(v, first.at);
+  const bool joined = smoothly && !order_.turns_first && goes_on_ahead(v, first.at);
   if (joined) {
-    const double lead_m = std::max(0.3, 0.6 * std::abs(v.speed_mps));
-    const double sign = first.reverse ? -1.0 : 1.0;
+    const double ahead_m = first.reverse ? -lead_m(v) : lead_m(v);
     Vertex lead = first;
-    lead.at = {v.at.east_m + sign * lead_m * std::cos(v.yaw_rad),
-               v.at.north_m + sign * lead_m * std::sin(v.yaw_rad)};
+    lead.at = {v.at.east_m + ahead_m * std::cos(v.yaw_rad),
+               v.at.north_m + ahead_m * std::sin(v.yaw_rad)};
     lead.turn = mission::Turn::Through;
     lead.stop = false;
     lead.deviation_m = path_params_->track.through_deviation_m;

@@ -40,6 +40,7 @@ class Trip {
     std::optional<double> turn_rad{};      ///< or by this, left positive
     double turn_radps = 0.5;               ///< at most
     double within_m = 0.5;                 ///< an end missed by more is failed
+    bool turns_first = false;  ///< on the spot to the way's begin, however little it points away
   };
 
   Trip(base::Setting<PathParams> path, base::Setting<BehaveParams> behave)
@@ -57,6 +58,11 @@ class Trip {
 
   State state() const noexcept { return state_; }
   bool busy() const noexcept { return state_ == State::Way || state_ == State::Face; }
+  /// On its way, it turns on the spot to where that leads on.
+  bool turns_onto() const noexcept {
+    const TrackPhase phase = tracker_.phase();
+    return state_ == State::Way && (phase == TrackPhase::Pivot || phase == TrackPhase::Turn);
+  }
   const std::string& reason() const noexcept { return reason_; }  ///< why Failed
   std::optional<double> distance_left_m() const noexcept;
   std::optional<double> turn_left_rad() const noexcept;

@@ -21,6 +21,9 @@ constexpr double kShorter = 0.8;
 constexpr double kArc_m = 0.25;
 constexpr double kTurn_radps = 0.4;
 constexpr double kElsewhere_m = 0.3;
+constexpr double kAtRest_mps = 0.02;
+constexpr double kNear_m = 0.1;    // of a first place, for one that stands
+constexpr double kLead_m = 0.25;   // and for one that stops first
 constexpr double kPassed_m = 0.8;  // farther it does not come before an answer is too old
 
 bool same_piece(const Place& a, const Place& b) noexcept {
@@ -33,26 +36,34 @@ base::EnuPoint place_in(const nav::sense::Pose2& odometry_in_local, const Place&
   return {at.x_m, at.y_m};
 }
 
-/// An answer begins where the robot was when it was asked for. The last place that lies behind it
-/// by now, of those that it would have driven without turning round.
-std::size_t passed(const AroundAnswer& answer, const nav::Vehicle& vehicle) {
+/// An answer begins where the robot was when it was asked for. @return the place before the first
+/// one that it can drive to from where it is: not one that lies behind it by now, nor one so near
+/// that a centimetre of error would turn it to somewhere else
+std::size_t joins_at(const AroundAnswer& answer, const nav::Vehicle& vehicle) {
   const std::vector<Place>& path = answer.found.path;
+  if (path.size() < 2) return 0;
   const auto back = nav::sense::inverse(answer.asked->local);
-  std::size_t best = 0;
-  double least_m = kPassed_m;
-  double way_m = 0.0;
-  for (std::size_t i = 0; i < path.size() && way_m < kPassed_m; ++i) {
-    if (i > 0) {
-      if (path[i].pivot || path[i].reverse != path[1].reverse) break;
-      way_m += std::hypot(path[i].pose.x_m - path[i - 1].pose.x_m,
-                          path[i].pose.y_m - path[i - 1].pose.y_m);
-    }
-    const double far_m = base::distance_m(vehicle.at, place_in(back, path[i]));
-    if (far_m >= least_m) continue;
-    least_m = far_m;
-    best = i;
+  const auto far_m = [&](std::size_t i) {
+    return base::distance_m(vehicle.at, place_in(back, path[i]));
+  };
+  const auto step_m = [&](std::size_t i) {
+    return std::hypot(path[i].pose.x_m - path[i - 1].pose.x_m,
+                      path[i].pose.y_m - path[i - 1].pose.y_m);
+  };
+  std::size_t first = 1;  // that is driven to; turns before it have no place of their own
+  while (first + 1 < path.size() && path[first].pivot) ++first;
+  std::size_t end = first;  // of those that are driven to without turning round
+  for (double way_m = 0.0; end < path.size() && way_m < kPassed_m; ++end) {
+    if (path[end].pivot || path[end].reverse != path[first].reverse) break;
+    way_m += step_m(end);
   }
-  return path.size() < 2 ? 0 : std::min(best, path.size() - 2);
+  std::size_t best = first - 1;
+  for (std::size_t i = first; i + 1 < end; ++i) {
+    if (far_m(i) < far_m(best)) best = i;
+  }
+  const double lead_m = std::abs(vehicle.speed_mps) < kAtRest_mps ? kNear_m : kLead_m;
+  while (best + 2 < end && far_m(best + 1) < lead_m) ++best;
+  return best;
 }
 
 }  // namespace
@@ -78,6 +89,8 @@ std::vector<nav::Vertex> way_of(const AroundAnswer& answer, double speed_mps, st
     v.speed_mps = speed_mps;
     v.reverse = p.reverse;
     v.stop = last || turns;
+    // As it was found: bent onto the way beyond, it would come nearer to what stands there.
+    if (!last && path[i + 1].pivot) v.turn = mission::Turn::Pivot;
     v.deviation_m = 0.02;
     v.tangent = !v.stop;
     v.curvature_1pm = out.empty() ? 0.0 : p.curvature_1pm;
@@ -126,10 +139,12 @@ std::vector<Place> Detour::rest(const nav::sense::Pose2& local) const {
 /// What is driven is kept: each change costs a look around. Another way counts where this one ends
 /// at the edge of what was seen, or leads into what came to be seen, or is longer by a quarter.
 bool Detour::worth(const AroundAnswer& answer, const std::vector<nav::Vertex>& way) const noexcept {
+  // Who stands before something may have left the same way in another order of its places.
+  if (stopped_) return true;
   if (same_way(way)) return false;
   const bool part = answer_->found.found == nav::around::Found::Part;
   const bool fence = answer.asked->fence_id != answer_->asked->fence_id;
-  if (stopped_ || part || fence || !answer.before_holds) return true;
+  if (part || fence || !answer.before_holds) return true;
   const double rest_m = trip_.path().length_m() - trip_.s_m();
   return answer.found.found == nav::around::Found::Way && answer.found.length_m < kShorter * rest_m;
 }
@@ -157,7 +172,7 @@ Detour::Taken Detour::take(std::shared_ptr<const AroundAnswer> answer, const nav
   open_ = false;
   using nav::around::Found;
   if (answer->found.found != Found::Way && answer->found.found != Found::Part) return Taken::Left;
-  std::vector<nav::Vertex> way = way_of(*answer, speed_mps, passed(*answer, vehicle));
+  std::vector<nav::Vertex> way = way_of(*answer, speed_mps, joins_at(*answer, vehicle));
   const bool drove = drives();
   if (way.empty()) return drove && trip_.busy() ? Taken::Left : turn(std::move(answer), vehicle);
   if (drove && !turns_ && trip_.busy() && !worth(*answer, way)) return Taken::Left;
@@ -167,6 +182,7 @@ Detour::Taken Detour::take(std::shared_ptr<const AroundAnswer> answer, const nav
   answer_ = std::move(answer);
   nav::Trip::Order order;
   order.way = std::move(way);
+  order.turns_first = answer_->found.path[1].pivot;
   trip_.begin(std::move(order), vehicle, drove);
   return drove && !turned ? Taken::Adopted : Taken::Begun;
 }

@@ -61,6 +61,11 @@ class Detour {
   const AroundAnswer& answer() const noexcept { return *answer_; }
   const nav::Path& path() const noexcept { return turns_ ? nowhere_ : trip_.path(); }
   double s_m() const noexcept { return turns_ ? 0.0 : trip_.s_m(); }
+  /// It turns on the spot to drive on, and nothing holds it. Another way found meanwhile would
+  /// begin at some heading of this turn, and lead nearer to what stands there than at its end.
+  bool turns_onto() const noexcept {
+    return drives() && !turns_ && !stopped_ && trip_.turns_onto();
+  }
   /// What it drives is a turn on the spot.
   bool turns() const noexcept { return drives() && turns_; }
   void reset() noexcept;

@@ -180,7 +180,8 @@ std::optional<base::BodyTwist> Robot::Impl::drive_around() {
   if (!guard.stops() && !detour.drives()) around_hopeless = false;
   const bool wanted = guard.wants_around() && stands;
   const bool look = detour.drives() || wanted || around_again;
-  if (look && detour.may_ask(clock.now()) && !ask_around()) {
+  const bool asks = look && !detour.turns_onto();
+  if (asks && detour.may_ask(clock.now()) && !ask_around()) {
     detour.reset();
     around_again = false;
   }

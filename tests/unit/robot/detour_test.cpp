@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <random>
 
 #include "base/angle.hpp"
 #include "robot/guard/around.hpp"
@@ -156,7 +157,69 @@ TEST_P(LateAnswers, DoNotLeadBackToWhereTheyWereAsked) {
   EXPECT_EQ(told("no_way_around"), 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Detours, LateAnswers, ::testing::Values(0, 200, 400, 700, 1000));
+INSTANTIATE_TEST_SUITE_P(Detours, LateAnswers, ::testing::Range(0, 1300, 100));
+
+/// What is seen of a box flickers by a cell each way, and answers come when they can.
+class FlickeringBoxes : public Detours, public ::testing::WithParamInterface<unsigned> {
+ protected:
+  double from(double least, double most) {
+    return std::uniform_real_distribution<double>(least, most)(random_);
+  }
+  std::mt19937 random_{GetParam()};
+};
+
+TEST_P(FlickeringBoxes, AreDrivenAround) {
+  // Given a box somewhere on the way,
+  drive_path();
+  box_ahead(4.0);
+  wall_mid_m = from(-0.5, 0.5);
+  const double wide_m = from(0.6, 1.6);
+  const double box_m = *wall_m;
+  const double late = from(0, 50);
+  // when each look sees it otherwise, and each answer takes up to a second,
+  double nearest_m = 1e9;
+  for (int i = 0; i < 50 * 60 && told("around_done") == 0; ++i) {
+    late_ticks = static_cast<int>(from(0, late));
+    wall_wide_m = wide_m + from(-0.1, 0.1);
+    wall_m = box_m + from(-0.05, 0.05);
+    field.tick();
+    const double ahead_m =
+        std::max({box_m - field.at.north_m, field.at.north_m - box_m - 1.0, 0.0});
+    const double aside_m = std::max(std::abs(field.at.east_m + wall_mid_m) - 0.5 * wide_m, 0.0);
+    nearest_m = std::min(nearest_m, std::hypot(ahead_m, aside_m));
+  }
+  // then it is behind it within a minute, and has touched nothing.
+  EXPECT_EQ(told("around_done"), 1);
+  EXPECT_GT(nearest_m, 0.39 + 0.05);
+}
+
+// Each of these stood for good where a turn on the spot was driven as a bend instead.
+INSTANTIATE_TEST_SUITE_P(Detours, FlickeringBoxes,
+                         ::testing::Values(14, 23, 24, 33, 39, 41, 61, 72, 85, 98));
+
+TEST_F(Detours, NoOtherWayIsAskedForInTheMiddleOfATurn) {
+  drive_path();
+  box_ahead(4.0);
+  until_around();
+  // Given a turn on the spot of more than a second onto the way around,
+  int turning = 0;
+  int asked = 0;
+  for (int i = 0; i < 50 * 60 && told("around_done") == 0; ++i) {
+    const double yaw_rad = field.yaw_rad;
+    const base::EnuPoint at = field.at;
+    const int before = questions;
+    field.tick();
+    const bool turns = std::abs(base::angle_diff_rad(yaw_rad, field.yaw_rad)) > 0.1 * 0.02 &&
+                       base::distance_m(at, field.at) < 0.02 * 0.02;
+    if (!turns) continue;
+    ++turning;
+    asked += questions - before;
+  }
+  ASSERT_GT(turning, 60);
+  // then nobody asks for another one until it is ended.
+  EXPECT_EQ(asked, 0);
+  EXPECT_EQ(told("around_done"), 1);
+}
 
 TEST_F(Detours, WhoHoldsItOnItsWayAroundAndLetsItGoOnSeesItGoOnFromThere) {
   drive_path();

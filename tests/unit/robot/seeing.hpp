@@ -39,7 +39,7 @@ class Seeing : public ::testing::Test {
         for (std::int32_t x = 0; x < 280; ++x) {
           const double ahead_m = (s->patch.x0 + x) * 0.05;
           if (ahead_m < *wall_m || ahead_m > *wall_m + 1.0) continue;
-          if (std::abs((s->patch.y0 + y) * 0.05) > 0.5 * wall_wide_m) continue;
+          if (std::abs((s->patch.y0 + y) * 0.05 - wall_mid_m) > 0.5 * wall_wide_m) continue;
           s->patch.cells[std::size_t(y * 280 + x)].known = wall_is;
         }
       }
@@ -76,6 +76,7 @@ class Seeing : public ::testing::Test {
   base::SensorHealth health = base::SensorHealth::Good;
   std::optional<double> wall_m;
   double wall_wide_m = 1e3;
+  double wall_mid_m = 0.0;  ///< of it, to the left
   Known wall_is = Known::Occupied;
   std::optional<RowSeen> row;               ///< what is seen of the row that was asked for
   std::optional<nav::sense::Mover> walker;  ///< as he was at `seen`, in the odometry's frame
