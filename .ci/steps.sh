@@ -5,9 +5,10 @@
 true
 
 all_steps=(doors shell format readme web build unit mutate api command vehicles real can page asan tsan fuzz)
-# Timing depends on what else the machine does, and clang-tidy takes long: by name.
+# A server builds the programs alone. Timing depends on what else the machine does, and clang-tidy takes
+# long: by name.
 # shellcheck disable=SC2034
-named_steps=(figures tidy bench soak)
+named_steps=(programs figures tidy bench soak)
 # shellcheck disable=SC2034
 quick_steps=(doors shell format web build unit)
 # shellcheck disable=SC2034
@@ -18,6 +19,7 @@ declare -A titles=(
   [readme]="what the README names exists"
   [web]="page: lint, types, unit tests"
   [build]="release build without warnings; objects need what their rooms may use"
+  [programs]="the same of the programs alone, without the tests of their rooms"
   [unit]="rooms, and the loop in simulated time"
   [api]="the API over real sockets"
   [command]="./run: options, bad input, Ctrl-C, second start; who has control; roverd decode; NTRIP casters; power cuts and kills; stops in a full house; TLS; under attack; secrets; a robot that sees; openssl, sslscan, curl, requests and websockets as peers; the network"
@@ -127,6 +129,16 @@ step_web() {
 step_build() {
   build_product
   ninja_build "$build"
+  built_well
+}
+
+step_programs() {
+  build_product
+  ninja_build "$build" rooms roverd socketcan_test # the last one runs on a kernel with CAN only
+  built_well
+}
+
+built_well() {
   "$root/.ci/doors" --built "$build"
   "$root/.ci/hardened" "$bin/roverd" "$bin/roverd-sim" "$bin/roverd-study"
 }
@@ -260,39 +272,12 @@ asan_tree() {
   ninja_build "$build/clang"
 }
 
-# What drives for minutes to measure a figure runs no line that the others do not.
-only_measures='Figures.*:*StandsForTenMinutesWithoutWandering*:*ThePairIsAlignedFromFiftyRandomOffsets*'
-
-# The long ones of those that know no real time: what starves a while is none the worse.
-simulated='^(around|cells|cloud|lanes|loop|mapping|marks|mission|nav|place|smooth|study)_test$'
-
-# asan_cases LABELS RESULTS CTEST OPTION…
-asan_cases() {
-  ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1 \
-    UBSAN_OPTIONS=print_stacktrace=1 GTEST_FILTER="-$only_measures" \
-    run_ctest "$build/clang" "$1" "$2" -j "$jobs" "${@:3}"
-}
-
-# asan_told LABELS RESULTS CTEST OPTION…: the same, and its output only where something went wrong.
-asan_told() {
-  local code=0
-  asan_cases "$@" >"$2-cases.log" 2>&1 || code=$?
-  [ "$code" = 0 ] || cat "$2-cases.log"
-  "$root/.ci/results" ctest "$2.xml"
-  return "$code"
-}
-
+# A server runs the tests of the rooms here only, where more is noticed: every case is told.
 step_asan() {
-  local code=0 before=$logs/asan-ahead.log
+  local run_as=(ordinary)
   asan_tree
-  if [ -n "${ahead:-}" ] && [ -e "$before" ]; then
-    cat "$before"
-    code=$(cat "$logs/asan-ahead.code")
-  else
-    asan_told 'unit|loop' "$logs/asan-simulated" -R "$simulated" || code=$?
-  fi
-  asan_told 'unit|loop|api' "$logs/asan" -E "$simulated" || code=$?
-  return "$code"
+  ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1 \
+    UBSAN_OPTIONS=print_stacktrace=1 run_ctest "$build/clang" 'unit|loop|api' "$logs/asan" -j "$jobs"
 }
 
 threaded='^(base|services|supervise|net|store|link|robot|net_socket|api_socket)_test$'
@@ -317,14 +302,13 @@ step_tsan() {
   "$root/.ci/results" ctest "$logs/tsan.xml"
 }
 
-# The trees of the sanitizers, built while the steps before them mostly wait: for sockets, browsers,
-# simulated robots. Of the idle class, so that a robot that wants the processor has it at once. What
-# goes wrong here is told by the step that builds the same once more. Then the long simulated
-# tests; the step tells how they ended.
-waiting_steps=' api command vehicles real can page '
+# The trees of the sanitizers, built while steps before them mostly wait: for sockets, for simulated
+# robots. Of the idle class, so that a robot that wants the processor has it at once. What goes wrong
+# here is told by the step that builds the same once more.
+waiting_steps=' api command real '
+starving_steps=' vehicles can page ' # where another program's caches are felt: nothing is built beside
 trees_ahead() {
-  local step code=0
-  rm -f "$logs/asan-ahead.log"
+  local step
   chrt --idle --pid 0 $BASHPID || true
   for step in "$@"; do
     case $step in
@@ -332,12 +316,6 @@ trees_ahead() {
       tsan) tsan_tree ;;
     esac || true
   done
-  if [[ " $* " == *" asan "* ]]; then
-    asan_told 'unit|loop' "$logs/asan-simulated" -R "$simulated" >"$logs/asan-ahead.new" 2>&1 ||
-      code=$?
-    echo "$code" >"$logs/asan-ahead.code"
-    mv "$logs/asan-ahead.new" "$logs/asan-ahead.log"
-  fi
 }
 
 fuzz_one() {
