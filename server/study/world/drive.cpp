@@ -8,6 +8,7 @@
 #include <numbers>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include "base/angle.hpp"
 #include "config/lookout.hpp"
@@ -20,6 +21,7 @@
 #include "sim/world/draw.hpp"
 #include "study/stage.hpp"
 #include "study/world/eyes.hpp"
+#include "study/world/passable.hpp"
 #include "study/world/referee.hpp"
 
 namespace roverd::study {
@@ -31,6 +33,9 @@ constexpr base::LatLon kWorldPlace{58.378020, 26.728900};
 constexpr double kReadyWithin_s = 60.0;
 constexpr double kGivesUp_s = 6.0;  // AUTO that stands so long before what does not move is done
 constexpr double kAway_m = 18.0;    // somebody drunk turns back here
+constexpr double kStuck_s = 30.0;   // and that shall have driven around it
+constexpr double kRoom_m = 0.3;     // of a way around that there is
+constexpr std::uint64_t kLate = 16;
 constexpr int kWordEvery_ticks = 25;
 constexpr int kHeardPerTick = 2;
 const base::WallTime kWorldWall{std::chrono::seconds(1'780'000'000)};
@@ -96,6 +101,10 @@ Result<Made> make(const Setup& setup, const Scenario& s) {
     overrides.emplace_back("sense.protect.creep_turn_radps=0.3");
     overrides.emplace_back("sense.protect.creep_back_mps=0.25");
   }
+  if (s.around_late_s) {
+    overrides.emplace_back("sense.blocked.then=around");
+    overrides.emplace_back("sense.blocked.after_s=1");
+  }
   overrides.insert(overrides.end(), setup.overrides.begin(), setup.overrides.end());
   auto settings = load_settings({setup.config, setup.vehicle, overrides});
   if (!settings) return tl::unexpected(settings.error());
@@ -155,6 +164,11 @@ class WorldDrive {
     }
     referee_.report(out);
     out.detours = detours_;
+    if (s_.around_late_s && !made_.settings.robot.vehicle.steered()) {
+      const Passage passage{s_.course.points.front(), s_.course.points.back(),
+                            made_.settings.robot.behave.lost_m, kRoom_m};
+      out.way = passable(around_.scene(), around_.witness().body(), passage);
+    }
     return out;
   }
 
@@ -187,13 +201,21 @@ class WorldDrive {
     if (heard_++ % kHeardPerTick == kHeardPerTick - 1) {
       if (auto picture = lookout_.picture(t)) stage_.robot().surroundings().put(std::move(picture));
     }
+    answer();
+    referee_.look();
+  }
+
+  /// The around thread's work: on a busy machine it takes its time.
+  void answer() {
     asked_.clear();
     stage_.robot().around_questions().take(asked_);
     if (!asked_.empty()) {
       if (!planner_) planner_ = std::make_unique<nav::around::Planner>();
-      stage_.robot().around_answers().put(robot::answer_around(*planner_, asked_.back()));
+      answer_ = robot::answer_around(*planner_, asked_.back());
+      answer_at_s_ = stage_.now_s() + late_.uniform(0.0, s_.around_late_s.value_or(0.0));
     }
-    referee_.look();
+    if (!answer_ || stage_.now_s() < answer_at_s_) return;
+    stage_.robot().around_answers().put(std::exchange(answer_, nullptr));
   }
 
   void tick() {
@@ -235,7 +257,8 @@ class WorldDrive {
       const auto state = stage_.robot().snapshot()->mission.state;
       out.finished = state == base::ExecutionState::Finished;
       if (state != base::ExecutionState::Running && state != base::ExecutionState::Paused) break;
-      if (referee_.stands_s() > kGivesUp_s && driven_s() > 2.0 * kGivesUp_s && !waits) break;
+      const double most_s = s_.around_late_s ? kStuck_s : kGivesUp_s;
+      if (referee_.stands_s() > most_s && driven_s() > 2.0 * most_s && !waits) break;
     }
   }
 
@@ -270,6 +293,9 @@ class WorldDrive {
   std::vector<std::shared_ptr<const robot::Surroundings>> done_;
   std::vector<std::shared_ptr<const robot::AroundQuestion>> asked_;
   std::unique_ptr<nav::around::Planner> planner_;
+  std::shared_ptr<const robot::AroundAnswer> answer_;
+  double answer_at_s_ = 0.0;
+  sim::world::Draw late_{s_.number, kLate};
   std::size_t detours_ = 0;
   bool goes_around_ = false;
   double began_s_ = 0.0;

@@ -109,6 +109,20 @@ ordered_json stop_json(const StopSeen& s) {
   return out;
 }
 
+/// Of the worlds whose ways around were looked for in the truth as well.
+std::string solved_text(const std::vector<WorldRun>& runs) {
+  std::size_t ways = 0, solved = 0, none = 0, narrow = 0;
+  for (const WorldRun& run : runs) {
+    if (!run.way) continue;
+    ++(*run.way ? ways : none);
+    if (run.finished) ++(*run.way ? solved : narrow);
+  }
+  if (ways + none == 0) return {};
+  return std::to_string(solved) + " of " + std::to_string(ways) +
+         " worlds with a way that keeps 0.3 m were driven to the end, and " +
+         std::to_string(narrow) + " of " + std::to_string(none) + " others\n";
+}
+
 const char* way_of(const Scenario& s) {
   return s.sticks ? "sticks" : s.course.reverse ? "backwards" : "ahead";
 }
@@ -141,6 +155,7 @@ std::string to_table(const std::vector<WorldRun>& runs) {
       "needless  per km  blind  stands m           of  near  far  slows  detours\n";
   for (const auto& [name, sums] : rows) out += row_of(name.substr(2), sums);
   out += row_of("all", all);
+  out += solved_text(runs);
   if (all.failed > 0) out += std::to_string(all.failed) + " could not begin\n";
   return out;
 }
@@ -157,6 +172,7 @@ std::string to_json(const std::vector<WorldRun>& runs, const Setup& setup) {
         {"lidar", s.lidar},         {"fault", s.fault},         {"problem", run.problem},
         {"finished", run.finished}, {"driven_m", run.driven_m}, {"driven_s", run.driven_s},
         {"brushes", run.brushes},   {"slows", run.slows},       {"detours", run.detours}};
+    if (run.way) one["way"] = *run.way;
     one["contacts"] = ordered_json::array();
     for (const TouchSeen& t : run.touches) one["contacts"].push_back(touch_json(t));
     one["stops"] = ordered_json::array();

@@ -19,6 +19,9 @@ constexpr int kMostWorlds = 100'000;
 constexpr std::uint64_t kScenario = 15;
 constexpr double kSpeeds_mps[] = {0.5, 1.0, 1.3};
 constexpr double kOpen_s = 120.0;
+constexpr double kAround_s = 180.0;
+constexpr double kStraight_m = 16.0;  // with something on it,
+constexpr double kClutter_m = 4.0;    // and so far beside it
 
 std::vector<Course> usual_courses() {
   const auto course = [](std::string name, std::vector<base::EnuPoint> points) {
@@ -142,6 +145,52 @@ void cross(sim::world::World& world, const Course& course, Draw& draw) {
   }
 }
 
+/// Anything that stands, and that each sensor can see.
+sim::world::Thing standing(Draw& draw, sim::world::Vec2 at) {
+  using sim::world::Kind;
+  sim::world::Thing t;
+  t.height_m = draw.uniform(0.7, 2.0);
+  t.points = {at};
+  switch (draw.below(4)) {
+    case 0:
+      t.kind = Kind::Pole;
+      t.radius_m = draw.uniform(0.04, 0.25);
+      break;
+    case 1: {
+      t.kind = Kind::Wall;
+      t.thickness_m = draw.uniform(0.05, 0.3);
+      const double yaw = draw.uniform(0.0, std::numbers::pi);
+      const double long_m = draw.uniform(0.5, 3.0);
+      t.points.push_back({at.x + long_m * std::cos(yaw), at.y + long_m * std::sin(yaw)});
+      break;
+    }
+    default:
+      t.kind = Kind::Box;
+      t.length_m = draw.uniform(0.3, 2.0);
+      t.width_m = draw.uniform(0.3, 1.2);
+      t.yaw_rad = draw.uniform(0.0, std::numbers::pi);
+  }
+  return t;
+}
+
+/// Something on the way, and other things anywhere but where it begins and ends.
+void stand_on(Scenario& out, Draw& draw) {
+  out.course = {};
+  out.course.name = "straight";
+  out.course.points = {{0, 0}, {0, kStraight_m}};
+  const int others = draw.below(9);
+  for (int i = 0; i <= others; ++i) {
+    const bool first = i == 0;
+    const double ahead_m = first ? draw.uniform(5.0, 10.0) : draw.uniform(4.0, kStraight_m - 3.0);
+    const double aside_m = first ? draw.uniform(-0.6, 0.6) : draw.uniform(-kClutter_m, kClutter_m);
+    out.world.things.push_back(standing(draw, {aside_m, ahead_m}));
+  }
+  out.kind = out.world.name = "around";
+  out.around_late_s = draw.uniform(0.0, 0.6);
+  out.time_s = kAround_s;
+  out.sticks = false;
+}
+
 bool read_number(std::string_view& text, std::uint64_t& out) {
   const auto [end, ec] = std::from_chars(text.data(), text.data() + text.size(), out);
   if (ec != std::errc{}) return false;
@@ -156,7 +205,8 @@ Result<WorldOrder> parse_worlds(std::string_view text) {
   for (const auto& [word, kind] :
        {std::pair{std::string_view("random:"), WorldOrder::Kind::Random},
         std::pair{std::string_view("open:"), WorldOrder::Kind::Open},
-        std::pair{std::string_view("crossing:"), WorldOrder::Kind::Crossing}}) {
+        std::pair{std::string_view("crossing:"), WorldOrder::Kind::Crossing},
+        std::pair{std::string_view("around:"), WorldOrder::Kind::Around}}) {
     if (!text.starts_with(word)) continue;
     out.kind = kind;
     std::string_view rest = text.substr(word.size());
@@ -220,12 +270,21 @@ Result<Scenario> scenario_of(const WorldOrder& order, std::uint64_t number,
       out.lidar = true;  // a plane meets every hill
       out.speed_mps = std::max(1.0, out.speed_mps);
       break;
+    case WorldOrder::Kind::Around:
+      break;  // below
     case WorldOrder::Kind::Crossing:
       out.kind = "crossing";
       out.world = random_world(number, RandomKind::Moving);
       break;
   }
-  if (order.kind != WorldOrder::Kind::File)
+  if (order.kind == WorldOrder::Kind::Around) {
+    stand_on(out, draw);
+    if (draw.uniform() < 0.3) {
+      out.fault = "noise";
+      out.faults.sensor_noise_m = draw.uniform(0.01, 0.04);
+      out.fault_after_s = 0.0;
+    }
+  } else if (order.kind != WorldOrder::Kind::File)
     turn(out.course, 2.0 * std::numbers::pi * draw.uniform());
   if (order.kind == WorldOrder::Kind::Crossing) cross(out.world, out.course, draw);
   if (order.kind == WorldOrder::Kind::Open) {

@@ -26,13 +26,15 @@
 
 namespace roverd::study {
 
-/// What --world says: FILE, or "random:N", "open:N", "crossing:N", each with ":SEED" or without.
+/// What --world says: FILE, or "random:N", "open:N", "crossing:N", "around:N", each with ":SEED" or
+/// without.
 struct WorldOrder {
   enum class Kind {
     File,
     Random,    ///< N of all kinds, numbered from the seed on
     Open,      ///< N fields of rough grass in the rain, where nothing stands
     Crossing,  ///< N worlds with people who walk to and fro across the course, 0.5 to 2 m/s
+    Around,    ///< N straight ways on which something stands, among other things: driven around
   };
   Kind kind = Kind::File;
   std::filesystem::path file;
@@ -45,7 +47,7 @@ base::Result<WorldOrder> parse_worlds(std::string_view text);
 /// One drive. All of it follows from the order and its number.
 struct Scenario {
   std::uint64_t number = 1;
-  std::string kind;   ///< static, moving, open, crossing, or the file's world
+  std::string kind;   ///< static, moving, open, crossing, around, or the file's world
   std::string fault;  ///< none, rain, dust, dropouts, sun, dirt, noise or dead
   sim::world::World world;
   Course course;  ///< by sticks: only where it begins to look
@@ -57,6 +59,9 @@ struct Scenario {
   sim::world::SensorFaults faults;
   double fault_after_s = 5.0;  ///< of the drive
   double time_s = 60.0;
+  /// What stays is driven around, and each way around takes up to so long to be found; empty: as
+  /// the settings say, and at once.
+  std::optional<double> around_late_s{};
 };
 /// @param courses empty: a straight, an L and a slalom. @param world of a file.
 /// Invalid: a course without points.
@@ -116,6 +121,9 @@ struct WorldRun {
   std::size_t slows = 0;
   std::size_t detours = 0;
   bool finished = false;
+  /// Of `around`, for who turns on the spot: a way that keeps 0.3 m from everything leads to the
+  /// end (passable.hpp).
+  std::optional<bool> way{};
   std::vector<base::EnuPoint> track;
 };
 

@@ -39,6 +39,12 @@ TEST(WorldOrderTest, AFileANumberOfWorldsOrOpenFields) {
   ASSERT_TRUE(crossing);
   EXPECT_EQ(crossing->kind, WorldOrder::Kind::Crossing);
   EXPECT_EQ(crossing->count, 5);
+
+  const auto around = parse_worlds("around:4:2");
+  ASSERT_TRUE(around);
+  EXPECT_EQ(around->kind, WorldOrder::Kind::Around);
+  EXPECT_EQ(around->count, 4);
+  EXPECT_EQ(around->seed, 2U);
 }
 
 TEST(ScenarioTest, PeopleCrossTheCourse) {
@@ -60,8 +66,9 @@ TEST(ScenarioTest, PeopleCrossTheCourse) {
 }
 
 TEST(WorldOrderTest, NonsenseIsNamed) {
-  for (const char* text : {"", "random:", "random:0", "random:100001", "random:x", "random:5:",
-                           "random:5:x", "random:5:1:2", "random:-5", "open:", "open:5 "}) {
+  for (const char* text :
+       {"", "random:", "random:0", "random:100001", "random:x", "random:5:", "random:5:x",
+        "random:5:1:2", "random:-5", "open:", "open:5 ", "around:x"}) {
     const auto order = parse_worlds(text);
     ASSERT_FALSE(order) << text;
     EXPECT_NE(order.error().detail.find("--world"), std::string::npos) << order.error().detail;
