@@ -17,10 +17,7 @@ std::string centimetres(double m) {
   return std::to_string(std::lround(m * 100.0)) + " cm";
 }
 
-/// Of a way that is joined while driving: straight ahead.
-double lead_m(const Vehicle& v) noexcept {
-  return std::max(0.3, 0.6 * std::abs(v.speed_mps));
-}
+constexpr double kLeads = 0.7;  ///< at most of the way to its first point
 
 }  // namespace
 
@@ -43,18 +40,27 @@ void Trip::begin(Order order, const Vehicle& vehicle, bool smoothly) {
   lay(vehicle, smoothly && moving && same_way);
 }
 
-/// May the new way be joined while driving?
-bool Trip::goes_on_ahead(const Vehicle& v, EnuPoint first) const noexcept {
-  if (tracker_.leg() != 0) return false;
-  const double ahead =
-      order_.way[next_].reverse ? base::wrap_rad(v.yaw_rad + base::kPi) : v.yaw_rad;
-  const double off = std::abs(base::angle_diff_rad(ahead, direction_rad(v.at, first)));
+/// The new way is joined while driving: so far it leads straight ahead first, and never beyond its
+/// first point. Empty: that lies too far aside, or too near.
+std::optional<double> Trip::lead_m(const Vehicle& v, const Vertex& first) const noexcept {
+  if (tracker_.leg() != 0) return std::nullopt;
+  const double ahead = first.reverse ? base::wrap_rad(v.yaw_rad + base::kPi) : v.yaw_rad;
+  const double off = std::abs(base::angle_diff_rad(ahead, direction_rad(v.at, first.at)));
   const double most = path_params_->vehicle.steered()
                           ? base::kPi / 2.0
                           : base::rad_from_deg(path_params_->pivot.angle_deg);
-  // Nearer than where the lead ends, the way would come back to it.
-  const double least_m = std::max(2.0 * std::abs(v.speed_mps), 1.5 * lead_m(v));
-  return off < most && base::distance_m(v.at, first) > least_m;
+  const double far_m = base::distance_m(v.at, first.at);
+  const double lead_m =
+      std::min(std::max(0.3, 0.6 * std::abs(v.speed_mps)), kLeads * far_m * std::cos(off));
+  if (off >= most || far_m <= 2.0 * std::abs(v.speed_mps) || lead_m < kNothing_m) return {};
+  return lead_m;
+}
+
+/// Where it begins, it turns on the spot if it was told to, also where it was interrupted before.
+mission::Turn Trip::turn_first() const noexcept {
+  const bool told =
+      next_ == 0 ? order_.turns_first : order_.way[next_ - 1].turn == mission::Turn::Pivot;
+  return told ? mission::Turn::Pivot : mission::Turn::Auto;
 }
 
 void Trip::lay(const Vehicle& v, bool smoothly) {
@@ -64,13 +70,12 @@ void Trip::lay(const Vehicle& v, bool smoothly) {
   const Vertex& first = order_.way[next_];
   std::vector<Vertex> all;
   all.reserve(order_.way.size() - next_ + 2);
-  const mission::Turn turn = order_.turns_first ? mission::Turn::Pivot : mission::Turn::Auto;
-  all.push_back({v.at, first.speed_mps, first.reverse, false, turn, 0.1});
+  all.push_back({v.at, first.speed_mps, first.reverse, false, turn_first(), 0.1});
   lead_ = 1;
   first_ = next_;
-  const bool joined = smoothly && !order_.turns_first && goes_on_ahead(v, first.at);
-  if (joined) {
-    const double ahead_m = first.reverse ? -lead_m(v) : lead_m(v);
+  const auto joins_m = smoothly && !order_.turns_first ? lead_m(v, first) : std::optional<double>{};
+  if (joins_m) {
+    const double ahead_m = first.reverse ? -*joins_m : *joins_m;
     Vertex lead = first;
     lead.at = {v.at.east_m + ahead_m * std::cos(v.yaw_rad),
                v.at.north_m + ahead_m * std::sin(v.yaw_rad)};
@@ -91,7 +96,7 @@ void Trip::lay(const Vehicle& v, bool smoothly) {
   const Path& path = paths_[slot_];
   if (path.legs.empty() || path.length_m() < kNothing_m) return face();
   state_ = State::Way;
-  if (joined) {
+  if (joins_m) {
     tracker_.move_to(path, 0, 0.0);
   } else {
     tracker_.begin(path, 0, 0.0);

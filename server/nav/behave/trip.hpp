@@ -13,6 +13,8 @@
 //        ╲                          the pivot angle is turned to on the spot instead
 //         ╰──▶ new goal
 //
+// The lead ends before the first new point. What is told to begin with a turn is not joined.
+//
 // Control thread; allocates when an order comes, and when the robot goes on after somebody else
 // drove it.
 
@@ -40,7 +42,7 @@ class Trip {
     std::optional<double> turn_rad{};      ///< or by this, left positive
     double turn_radps = 0.5;               ///< at most
     double within_m = 0.5;                 ///< an end missed by more is failed
-    bool turns_first = false;  ///< on the spot to the way's begin, however little it points away
+    bool turns_first = false;              ///< on the spot to the way's begin, from 5 degrees on
   };
 
   Trip(base::Setting<PathParams> path, base::Setting<BehaveParams> behave)
@@ -73,7 +75,8 @@ class Trip {
 
  private:
   void lay(const Vehicle& vehicle, bool smoothly);
-  bool goes_on_ahead(const Vehicle& vehicle, EnuPoint first) const noexcept;
+  std::optional<double> lead_m(const Vehicle& v, const Vertex& first) const noexcept;
+  mission::Turn turn_first() const noexcept;
   void face();
   void fail(std::string why);
   void watch(const Vehicle& vehicle, double dt_s);

@@ -24,6 +24,8 @@ constexpr double kElsewhere_m = 0.3;
 constexpr double kAtRest_mps = 0.02;
 constexpr double kNear_m = 0.1;    // of a first place, for one that stands
 constexpr double kLead_m = 0.25;   // and for one that stops first
+constexpr double kJoins_s = 2.2;   // ahead of one that drives on
+constexpr double kAside_m = 0.05;  // of the straight way there
 constexpr double kPassed_m = 0.8;  // farther it does not come before an answer is too old
 
 bool same_piece(const Place& a, const Place& b) noexcept {
@@ -61,9 +63,24 @@ std::size_t joins_at(const AroundAnswer& answer, const nav::Vehicle& vehicle) {
   for (std::size_t i = first; i + 1 < end; ++i) {
     if (far_m(i) < far_m(best)) best = i;
   }
-  const double lead_m = std::abs(vehicle.speed_mps) < kAtRest_mps ? kNear_m : kLead_m;
-  while (best + 2 < end && far_m(best + 1) < lead_m) ++best;
-  return best;
+  const auto beyond = [&](double lead_m) {
+    std::size_t at = best;
+    while (at + 2 < end && far_m(at + 1) < lead_m) ++at;
+    return at;
+  };
+  const double v_mps = std::abs(vehicle.speed_mps);
+  if (v_mps < kAtRest_mps) return beyond(kNear_m);
+  // So far ahead that it need not stop, where the way there is as good as straight.
+  const std::size_t on = beyond(kJoins_s * v_mps);
+  const base::EnuPoint there = place_in(back, path[on + 1]);
+  const base::EnuPoint line = there - vehicle.at;
+  for (std::size_t i = best + 1; i <= on; ++i) {
+    const base::EnuPoint off = place_in(back, path[i]) - vehicle.at;
+    const double aside_m = std::abs(line.east_m * off.north_m - line.north_m * off.east_m) /
+                           std::max(kNear_m, std::hypot(line.east_m, line.north_m));
+    if (aside_m > kAside_m) return beyond(kLead_m);
+  }
+  return std::max(on, beyond(kLead_m));
 }
 
 }  // namespace
@@ -139,8 +156,8 @@ std::vector<Place> Detour::rest(const nav::sense::Pose2& local) const {
 /// What is driven is kept: each change costs a look around. Another way counts where this one ends
 /// at the edge of what was seen, or leads into what came to be seen, or is longer by a quarter.
 bool Detour::worth(const AroundAnswer& answer, const std::vector<nav::Vertex>& way) const noexcept {
-  // Who stands before something may have left the same way in another order of its places.
-  if (stopped_) return true;
+  // From where it is held, also the same way may be begun otherwise.
+  if (held_) return true;
   if (same_way(way)) return false;
   const bool part = answer_->found.found == nav::around::Found::Part;
   const bool fence = answer.asked->fence_id != answer_->asked->fence_id;
@@ -177,13 +194,16 @@ Detour::Taken Detour::take(std::shared_ptr<const AroundAnswer> answer, const nav
   if (way.empty()) return drove && trip_.busy() ? Taken::Left : turn(std::move(answer), vehicle);
   if (drove && !turns_ && trip_.busy() && !worth(*answer, way)) return Taken::Left;
   const bool turned = std::exchange(turns_, false);
-  stopped_ = false;
+  const bool again = drove && !turned && same_way(way);
+  const bool moves = std::abs(vehicle.speed_mps) >= kAtRest_mps;
+  stopped_ = held_ = false;
   turned_at_.reset();
   answer_ = std::move(answer);
   nav::Trip::Order order;
   order.way = std::move(way);
   order.turns_first = answer_->found.path[1].pivot;
-  trip_.begin(std::move(order), vehicle, drove);
+  trip_.begin(std::move(order), vehicle, drove && moves);
+  if (again) return Taken::Again;
   return drove && !turned ? Taken::Adopted : Taken::Begun;
 }
 
@@ -193,7 +213,7 @@ Detour::Taken Detour::turn(std::shared_ptr<const AroundAnswer> answer,
   const bool again = turned_at_ && base::distance_m(*turned_at_, vehicle.at) < kElsewhere_m;
   if (again || answer->found.path.empty()) return Taken::Useless;
   const bool drove = drives();
-  stopped_ = false;
+  stopped_ = held_ = false;
   turns_ = true;
   turned_at_ = vehicle.at;
   nav::Trip::Order order;
@@ -214,11 +234,11 @@ nav::TrackOutput Detour::step(const nav::Vehicle& vehicle, double limit_mps, bas
 void Detour::interrupt(base::Time now) noexcept {
   stepped_at_ = now;
   trip_.interrupt();
-  stopped_ = true;
+  stopped_ = held_ = true;
 }
 
 void Detour::reset() noexcept {
-  stopped_ = turns_ = false;
+  stopped_ = held_ = turns_ = false;
   answer_.reset();
   trip_.reset();
   open_ = false;

@@ -32,7 +32,7 @@ class Detour {
       : trip_(std::move(path), std::move(behave)) {}
 
   bool drives() const noexcept { return answer_ != nullptr; }
-  /// What is driven led too near to something, and stands.
+  /// What is driven led too near to something.
   bool stopped() const noexcept { return stopped_; }
   /// No question is open, and the last one was long enough ago.
   bool may_ask(base::Time now) const noexcept;
@@ -46,6 +46,7 @@ class Detour {
   enum class Taken {
     Left,     ///< there is none, or what is driven is as good
     Useless,  ///< it would only turn on the spot, where it turned already
+    Again,    ///< the one that is driven, begun anew where the robot is held
     Adopted,
     Begun
   };
@@ -55,6 +56,8 @@ class Detour {
   nav::TrackOutput step(const nav::Vehicle& vehicle, double limit_mps, base::Time now, double dt_s);
   /// It stands before something on the way around.
   void interrupt(base::Time now) noexcept;
+  /// It does so no more.
+  void let_go() noexcept { held_ = false; }
   bool done() const noexcept { return trip_.state() == nav::Trip::State::There; }
   bool failed() const noexcept { return trip_.state() == nav::Trip::State::Failed; }
   /// While it drives: what it drives, and how the way goes on.
@@ -63,9 +66,7 @@ class Detour {
   double s_m() const noexcept { return turns_ ? 0.0 : trip_.s_m(); }
   /// It turns on the spot to drive on, and nothing holds it. Another way found meanwhile would
   /// begin at some heading of this turn, and lead nearer to what stands there than at its end.
-  bool turns_onto() const noexcept {
-    return drives() && !turns_ && !stopped_ && trip_.turns_onto();
-  }
+  bool turns_onto() const noexcept { return drives() && !turns_ && !held_ && trip_.turns_onto(); }
   /// What it drives is a turn on the spot.
   bool turns() const noexcept { return drives() && turns_; }
   void reset() noexcept;
@@ -86,7 +87,8 @@ class Detour {
   std::shared_ptr<const AroundAnswer> answer_;
   std::uint64_t asked_ = 0;
   bool open_ = false;
-  bool stopped_ = false;  ///< by what stands on the way around
+  bool stopped_ = false;  ///< by what stands on the way around, since it was taken
+  bool held_ = false;     ///< and is so now
   base::Time asked_at_{};
   base::Time stepped_at_{};
 };

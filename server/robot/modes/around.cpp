@@ -199,6 +199,7 @@ base::BodyTwist Robot::Impl::step_detour() {
     detour.interrupt(clock.now());
     return {};
   }
+  if (!guard.stops()) detour.let_go();
   const nav::TrackOutput out = detour.step(vehicle(), limit_mps(), clock.now(), clock.dt_s());
   speed_reason = "around";
   if (detour.failed()) {

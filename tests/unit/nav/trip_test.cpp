@@ -91,6 +91,41 @@ TEST_F(Trips, AWayThatBeginsNearIsNotLedPastItsBegin) {
   EXPECT_LT(trip.path().length_m(), 1.4);
 }
 
+TEST_F(Trips, GoalsThatAreToldAgainAndAgainANoseAheadAreDriven) {
+  // Given somebody who tells a goal 0.4 m ahead five times a second,
+  v.speed_mps = 0.15;
+  for (int i = 0; i < 50 * 20; ++i) {
+    if (i % 10 == 0) {
+      Trip::Order order;
+      order.way = {
+          to(v.at.east_m + 0.4 * std::cos(v.yaw_rad), v.at.north_m + 0.4 * std::sin(v.yaw_rad))};
+      order.way.front().speed_mps = 0.15;
+      trip.begin(order, v, true);
+    }
+    tick();
+  }
+  // then it drives, and does not stop for each of them.
+  EXPECT_GT(v.at.east_m, 2.0);
+}
+
+TEST_F(Trips, ATurnOnItsWayIsTurnedAlsoWhereItWasInterruptedInIt) {
+  // Given a stop on its way, where it shall turn by 20 degrees before it goes on,
+  Trip::Order order;
+  order.way = {to(1.0, 0.0), to(1.0 + std::cos(0.35), std::sin(0.35))};
+  order.way[0].stop = true;
+  order.way[0].turn = mission::Turn::Pivot;
+  trip.begin(order, v, false);
+  for (int i = 0; i < 50 * 20 && !trip.turns_onto(); ++i) tick();
+  ASSERT_TRUE(trip.turns_onto());
+  ASSERT_NEAR(v.at.east_m, 1.0, 0.05);
+  for (int i = 0; i < 5; ++i) tick();
+  // when something holds it in the middle of that,
+  trip.interrupt();
+  v.speed_mps = v.yaw_rate_radps = 0.0;
+  // then it turns to the end before it drives.
+  EXPECT_NEAR(points_deg(), base::deg_from_rad(0.35), 3.0);
+}
+
 TEST_F(Trips, AWayThatBeginsFarAheadIsJoinedWithoutAStop) {
   Trip::Order order;
   order.way = {to(5.0, 0.0)};

@@ -1,6 +1,8 @@
 // A mission and a box that stays on its way. The planner is asked as the program's thread asks it,
 // but the test says when the answer comes.
 
+#include "robot/guard/detour.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -159,6 +161,28 @@ TEST_P(LateAnswers, DoNotLeadBackToWhereTheyWereAsked) {
 
 INSTANTIATE_TEST_SUITE_P(Detours, LateAnswers, ::testing::Range(0, 1300, 100));
 
+TEST(WayOf, ATurnOnItsWayIsTurnedOnTheSpotHoweverSlight) {
+  // Given a way that turns by 20 degrees on the spot after half a metre,
+  AroundAnswer answer;
+  answer.asked = std::make_shared<AroundQuestion>();
+  const auto add = [&](double x_m, double y_m, double deg, bool pivot) {
+    nav::around::Place p;
+    p.pose = {x_m, y_m, base::rad_from_deg(deg)};
+    p.pivot = pivot;
+    answer.found.path.push_back(p);
+  };
+  add(0.0, 0.0, 0.0, false);
+  add(0.5, 0.0, 0.0, false);
+  add(0.5, 0.0, 20.0, true);
+  add(0.97, 0.17, 20.0, false);
+  // then it stops there, and turns.
+  const auto way = way_of(answer, 0.5);
+  ASSERT_EQ(way.size(), 2U);
+  EXPECT_TRUE(way[0].stop);
+  EXPECT_EQ(way[0].turn, mission::Turn::Pivot);
+  EXPECT_EQ(way[1].turn, mission::Turn::Auto);
+}
+
 /// What is seen of a box flickers by a cell each way, and answers come when they can.
 class FlickeringBoxes : public Detours, public ::testing::WithParamInterface<unsigned> {
  protected:
@@ -201,7 +225,7 @@ TEST_F(Detours, NoOtherWayIsAskedForInTheMiddleOfATurn) {
   drive_path();
   box_ahead(4.0);
   until_around();
-  // Given a turn on the spot of more than a second onto the way around,
+  // Given turns on the spot, which take more than a second,
   int turning = 0;
   int asked = 0;
   for (int i = 0; i < 50 * 60 && told("around_done") == 0; ++i) {
@@ -216,7 +240,7 @@ TEST_F(Detours, NoOtherWayIsAskedForInTheMiddleOfATurn) {
     asked += questions - before;
   }
   ASSERT_GT(turning, 60);
-  // then nobody asks for another one until it is ended.
+  // then nobody asks for another way until they are ended.
   EXPECT_EQ(asked, 0);
   EXPECT_EQ(told("around_done"), 1);
 }
@@ -260,6 +284,26 @@ TEST_F(Detours, WhileItDrivesAroundNobodyIsToldThatThereIsNoWay) {
   for (int i = 0; i < 50 * 60 && told("around_done") == 0; ++i) field.tick();
   EXPECT_EQ(told("around_done"), 1);
   EXPECT_EQ(told("no_way_around"), 0);
+}
+
+TEST_F(Detours, WhereItIsHeldOnItsWayAroundItDoesNotSayAgainAndAgainThatThereIsNone) {
+  drive_path();
+  box_ahead(4.0);
+  until_beside();
+  // Given somebody who stands before it,
+  nav::sense::Mover somebody;
+  somebody.at = {pose.x_m + 0.9 * std::cos(pose.yaw_rad), pose.y_m + 0.9 * std::sin(pose.yaw_rad)};
+  somebody.radius_m = 0.3;
+  somebody.seen = field.now;
+  walker = somebody;
+  // when every other look finds a way, and every other none,
+  for (int i = 0; i < 50 * 30; ++i) {
+    finds_none = questions % 4 < 2;
+    field.tick();
+  }
+  // then beginning the same way anew is no news: one other way, perhaps, and none once more.
+  EXPECT_GE(told("no_way_around"), 1);
+  EXPECT_LE(told("no_way_around"), 2);
 }
 
 TEST_F(Detours, AnAnswerThatComesTooLateIsNotDriven) {
