@@ -5,10 +5,11 @@
 true
 
 all_steps=(doors shell format readme web build unit mutate api command vehicles real can page asan tsan fuzz)
-# A server builds the programs alone. Timing depends on what else the machine does, and clang-tidy takes
-# long: by name.
+# A server builds and runs each test of the rooms once (ONCE=yes): what only computes, as it ships
+# (programs, simulated), all others under the sanitizers. By name are these, and what depends on what
+# else the machine does, or takes long.
 # shellcheck disable=SC2034
-named_steps=(programs figures tidy bench soak)
+named_steps=(programs simulated figures tidy bench soak)
 # shellcheck disable=SC2034
 quick_steps=(doors shell format web build unit)
 # shellcheck disable=SC2034
@@ -19,7 +20,8 @@ declare -A titles=(
   [readme]="what the README names exists"
   [web]="page: lint, types, unit tests"
   [build]="release build without warnings; objects need what their rooms may use"
-  [programs]="the same of the programs alone, without the tests of their rooms"
+  [programs]="release build of the programs, and of the tests that only compute"
+  [simulated]="what computes for long, and meets no bytes of others, threads or sockets"
   [unit]="rooms, and the loop in simulated time"
   [api]="the API over real sockets"
   [command]="./run: options, bad input, Ctrl-C, second start; who has control; roverd decode; NTRIP casters; power cuts and kills; stops in a full house; TLS; under attack; secrets; a robot that sees; openssl, sslscan, curl, requests and websockets as peers; the network"
@@ -134,7 +136,7 @@ step_build() {
 
 step_programs() {
   build_product
-  ninja_build "$build" rooms roverd socketcan_test # the last one runs on a kernel with CAN only
+  ninja_build "$build" rooms roverd simulated socketcan_test # the last one runs on a kernel with CAN
   built_well
 }
 
@@ -146,6 +148,11 @@ built_well() {
 step_unit() {
   local run_as=(ordinary)
   run_ctest "$build" 'unit|loop' "$logs/unit" -j "$jobs"
+}
+
+step_simulated() {
+  local run_as=(ordinary)
+  run_ctest "$build" simulated "$logs/simulated" -j "$jobs"
 }
 
 step_api() { run_ctest "$build" api "$logs/api"; }
@@ -264,20 +271,22 @@ step_tidy() {
 # One tree, by clang, for the address sanitizer's tests and for the fuzz targets: they share every room.
 by_clang() {
   configure "$build/clang" -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Sanitized \
-    -DCMAKE_CXX_FLAGS="-O1 -g1" -DROVERD_FUZZ=ON "${in_groups[@]}"
+    -DCMAKE_CXX_FLAGS="-O1 -g1" -DROVERD_FUZZ=ON -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=24
 }
 
 asan_tree() {
+  local targets=(all)
+  [ "${ONCE:-}" != yes ] || targets=(sanitized fuzz)
   by_clang
-  ninja_build "$build/clang"
+  ninja_build "$build/clang" "${targets[@]}"
 }
 
-# A server runs the tests of the rooms here only, where more is noticed: every case is told.
 step_asan() {
-  local run_as=(ordinary)
+  local run_as=(ordinary) labels='unit|loop|api'
+  [ "${ONCE:-}" != yes ] || labels=sanitized
   asan_tree
   ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1 \
-    UBSAN_OPTIONS=print_stacktrace=1 run_ctest "$build/clang" 'unit|loop|api' "$logs/asan" -j "$jobs"
+    UBSAN_OPTIONS=print_stacktrace=1 run_ctest "$build/clang" "$labels" "$logs/asan" -j "$jobs"
 }
 
 threaded='^(base|services|supervise|net|store|link|robot|net_socket|api_socket)_test$'
@@ -306,7 +315,7 @@ step_tsan() {
 # robots. Of the idle class, so that a robot that wants the processor has it at once. What goes wrong
 # here is told by the step that builds the same once more.
 waiting_steps=' api command real '
-starving_steps=' vehicles can page ' # where another program's caches are felt: nothing is built beside
+starving_steps=' vehicles can page ' # no file more is compiled beside them: what else runs is felt there
 trees_ahead() {
   local step
   chrt --idle --pid 0 $BASHPID || true
