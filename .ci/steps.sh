@@ -271,7 +271,7 @@ step_tidy() {
 # One tree, by clang, for the address sanitizer's tests and for the fuzz targets: they share every room.
 by_clang() {
   configure "$build/clang" -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Sanitized \
-    -DCMAKE_CXX_FLAGS="-O1 -g1" -DROVERD_FUZZ=ON -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=24
+    -DCMAKE_CXX_FLAGS="-O1 -g1" -DROVERD_FUZZ=ON "${in_groups[@]}"
 }
 
 asan_tree() {
