@@ -133,6 +133,7 @@ struct Robot::Impl {
   std::uint64_t around_way_id = 0;
   bool around_again = false;  ///< it was held on its way around: one from here is looked for
   base::Time around_again_at{};
+  bool around_backs = false;     ///< the last answer was that it cannot turn where it stands
   bool around_hopeless = false;  ///< there is no way around, and that was told
   std::string around_none;       ///< why, as it was told
   std::string around_in_doubt;   ///< why there may be none, while one is driven

@@ -65,9 +65,10 @@ bool Robot::Impl::ask_around() {
   Question& q = asked->question;
   q.pose = guard.odometry().pose;
   q.body = guard.body();
-  // One that turns on the spot backs off only from where the guard stopped it on its way around.
+  // One that turns on the spot backs off only from where the guard stopped it on its way around,
+  // and where it stands too near to turn.
   q.kinematics = {nav::min_radius_m(config->vehicle), !config->vehicle.steered(),
-                  config->vehicle.steered() || detour.stopped()};
+                  config->vehicle.steered() || detour.stopped() || around_backs};
   for (const base::EnuPoint& p : ahead->way) {
     const auto at = to_odometry(asked->local, p, 0.0);
     q.route.push_back({at.x_m, at.y_m});
@@ -109,6 +110,7 @@ void Robot::Impl::take_around() {
     const double left_m = answer->asked->from_m + answer->found.leave_m;
     around_again = false;
     if (way) around_in_doubt.clear();
+    around_backs = !way && answer->found.why == Why::Turning;
     if (taken == Detour::Taken::Adopted) {
       around_hopeless = false;
       around_left_m = std::min(around_left_m, left_m);
@@ -157,7 +159,7 @@ void Robot::Impl::watch_detour() {
   around_way_id = missions.executor.way_id();
   if (other || !pose->heading_known) {
     other ? detour.begin_anew() : detour.reset();
-    around_again = around_hopeless = false;
+    around_again = around_hopeless = around_backs = false;
     around_in_doubt.clear();
     return;
   }

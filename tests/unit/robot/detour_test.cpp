@@ -130,6 +130,26 @@ TEST_F(Detours, ABoxThatStaysIsDrivenAroundAndTheMissionGoesOnBehindIt) {
   EXPECT_LT(std::abs(field.at.east_m), 0.3);
 }
 
+TEST_F(Detours, WhoStandsTooNearToTurnBacksOffFirst) {
+  drive_path();
+  // Given something that is there all at once, a hand's breadth before it,
+  box_ahead(0.5 * VehicleLength + 0.3);
+  for (int i = 0; i < 50 * 3; ++i) field.tick();
+  const double stood_m = field.at.north_m;
+  wall_m = stood_m + 0.5 * VehicleLength + 0.12;
+  const double box_m = *wall_m;
+  // when it may go around,
+  double least_m = stood_m;
+  for (int i = 0; i < 50 * 90 && told("around_done") == 0; ++i) {
+    field.tick();
+    least_m = std::min(least_m, field.at.north_m);
+  }
+  // then it backs off to where it can turn, and does so.
+  EXPECT_EQ(told("around_done"), 1);
+  EXPECT_LT(least_m, stood_m - 0.05);
+  EXPECT_GT(field.at.north_m, box_m + 1.0);
+}
+
 /// A busy processor: what is answered begins where the robot was.
 class LateAnswers : public Detours, public ::testing::WithParamInterface<int> {};
 
