@@ -1,10 +1,9 @@
 #include "study/world/passable.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <queue>
+#include <utility>
 #include <vector>
 
 #include "base/angle.hpp"

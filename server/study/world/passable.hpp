@@ -18,6 +18,7 @@ struct Passage {
 };
 
 /// From its begin, pointing along it, to its end. Bounded: looks at each place and direction once.
+/// Pure; metres, in the world's frame (ENU about the start). Who moves stands as at its begin.
 bool passable(const sim::world::Scene& scene, const sim::world::Body& body, const Passage& passage);
 
 }  // namespace roverd::study

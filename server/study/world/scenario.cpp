@@ -173,7 +173,7 @@ sim::world::Thing standing(Draw& draw, sim::world::Vec2 at) {
   return t;
 }
 
-/// Something on the way, and other things anywhere but where it begins and ends.
+/// Something on the way, and other things anywhere but where it begins; a wall may reach its end.
 void stand_on(Scenario& out, Draw& draw) {
   out.course = {};
   out.course.name = "straight";
@@ -284,8 +284,9 @@ Result<Scenario> scenario_of(const WorldOrder& order, std::uint64_t number,
       out.faults.sensor_noise_m = draw.uniform(0.01, 0.04);
       out.fault_after_s = 0.0;
     }
-  } else if (order.kind != WorldOrder::Kind::File)
+  } else if (order.kind != WorldOrder::Kind::File) {
     turn(out.course, 2.0 * std::numbers::pi * draw.uniform());
+  }
   if (order.kind == WorldOrder::Kind::Crossing) cross(out.world, out.course, draw);
   if (order.kind == WorldOrder::Kind::Open) {
     // Longer: to and fro.
