@@ -69,7 +69,7 @@ void define(CLI::App& app, Options& o) {
       ->capture_default_str();
   app.add_option("--world", o.world,
                  "drive in a simulated world and count what is touched: a file, random:N[:SEED], "
-                 "open:N[:SEED], crossing:N[:SEED] or around:N[:SEED]");
+                 "open:N[:SEED], crossing:N[:SEED], turning:N[:SEED] or around:N[:SEED]");
   app.add_option("--seeds", o.seeds, "runs of each course under each disturbance, seeds 1 to N")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();

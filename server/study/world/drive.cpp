@@ -251,7 +251,7 @@ class WorldDrive {
       out.problem = started.error().detail;
       return;
     }
-    const bool waits = s_.kind == "moving" || s_.kind == "crossing";
+    const bool waits = s_.kind == "moving" || s_.kind == "crossing" || s_.kind == "turning";
     while (driven_s() < s_.time_s) {
       tick();
       const auto state = stage_.robot().snapshot()->mission.state;

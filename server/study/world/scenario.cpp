@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/angle.hpp"
 #include "sim/world/draw.hpp"
 #include "sim/world/random.hpp"
 #include "sim/world/scene.hpp"
@@ -120,27 +121,62 @@ OnCourse on_course(const Course& course, double s_m) {
   return {};
 }
 
-/// To and fro across it: who meets the robot is a matter of chance.
-void cross(sim::world::World& world, const Course& course, Draw& draw) {
+/// Of the world only some things that stand.
+void empty_of_people(sim::world::World& world) {
   std::erase_if(world.things, [](const auto& t) { return sim::world::moves(t.kind); });
   if (world.things.size() > 8) world.things.resize(8);
+}
+
+sim::world::Thing person(Draw& draw, double slowest_mps, double longest_pause_s) {
+  sim::world::Thing t;
+  t.kind = sim::world::Kind::Person;
+  t.height_m = draw.uniform(1.1, 1.95);
+  t.length_m = 0.3;
+  t.width_m = draw.uniform(0.35, 0.55);
+  t.speed_mps = draw.uniform(slowest_mps, 2.0);
+  t.pause_s = draw.uniform(0.0, longest_pause_s);
+  t.start_s = draw.uniform(0.0, 6.0);
+  t.motion = sim::world::Motion::Back;
+  return t;
+}
+
+/// To and fro across it: who meets the robot is a matter of chance.
+void cross(sim::world::World& world, const Course& course, Draw& draw) {
+  empty_of_people(world);
   for (int i = 2 + draw.below(3); i > 0; --i) {
     const OnCourse there = on_course(course, draw.uniform(3.5, 17.0));
     const double yaw = there.yaw_rad + draw.uniform(0.9, std::numbers::pi - 0.9);
     const double half_m = draw.uniform(3.0, 6.0);
     const double dx = half_m * std::cos(yaw);
     const double dy = half_m * std::sin(yaw);
-    sim::world::Thing t;
-    t.kind = sim::world::Kind::Person;
-    t.height_m = draw.uniform(1.1, 1.95);
-    t.length_m = 0.3;
-    t.width_m = draw.uniform(0.35, 0.55);
-    t.speed_mps = draw.uniform(0.5, 2.0);
-    t.pause_s = draw.uniform(0.0, 4.0);
-    t.start_s = draw.uniform(0.0, 6.0);
-    t.motion = sim::world::Motion::Back;
+    sim::world::Thing t = person(draw, 0.5, 4.0);
     t.points = {{there.at.east_m - dx, there.at.north_m - dy},
                 {there.at.east_m + dx, there.at.north_m + dy}};
+    world.things.push_back(std::move(t));
+  }
+}
+
+/// Here and there about it, with corners of up to a right angle: who walks past may turn.
+void wander(sim::world::World& world, const Course& course, Draw& draw) {
+  empty_of_people(world);
+  for (int i = 3 + draw.below(3); i > 0; --i) {
+    const OnCourse there = on_course(course, draw.uniform(4.0, 17.0));
+    const double off_rad = draw.uniform(-std::numbers::pi, std::numbers::pi);
+    const double off_m = draw.uniform(1.0, 4.0);
+    sim::world::Vec2 at{there.at.east_m + off_m * std::cos(off_rad),
+                        there.at.north_m + off_m * std::sin(off_rad)};
+    double yaw_rad = draw.uniform(-std::numbers::pi, std::numbers::pi);
+    sim::world::Thing t = person(draw, 0.8, 1.0);
+    t.points = {at};
+    for (int leg = 6 + draw.below(5); leg > 0; --leg) {
+      const double leg_m = draw.uniform(1.0, 4.0);
+      at = {at.x + leg_m * std::cos(yaw_rad), at.y + leg_m * std::sin(yaw_rad)};
+      t.points.push_back(at);
+      // He stays about there, and where he would leave he turns back more often than not.
+      const double home_rad = std::atan2(there.at.north_m - at.y, there.at.east_m - at.x);
+      const double side = base::angle_diff_rad(yaw_rad, home_rad) > 0.0 ? 1.0 : -1.0;
+      yaw_rad += (draw.uniform() < 0.8 ? side : -side) * draw.uniform(0.3, 0.5 * std::numbers::pi);
+    }
     world.things.push_back(std::move(t));
   }
 }
@@ -206,6 +242,7 @@ Result<WorldOrder> parse_worlds(std::string_view text) {
        {std::pair{std::string_view("random:"), WorldOrder::Kind::Random},
         std::pair{std::string_view("open:"), WorldOrder::Kind::Open},
         std::pair{std::string_view("crossing:"), WorldOrder::Kind::Crossing},
+        std::pair{std::string_view("turning:"), WorldOrder::Kind::Turning},
         std::pair{std::string_view("around:"), WorldOrder::Kind::Around}}) {
     if (!text.starts_with(word)) continue;
     out.kind = kind;
@@ -276,6 +313,10 @@ Result<Scenario> scenario_of(const WorldOrder& order, std::uint64_t number,
       out.kind = "crossing";
       out.world = random_world(number, RandomKind::Moving);
       break;
+    case WorldOrder::Kind::Turning:
+      out.kind = "turning";
+      out.world = random_world(number, RandomKind::Moving);
+      break;
   }
   if (order.kind == WorldOrder::Kind::Around) {
     stand_on(out, draw);
@@ -288,6 +329,7 @@ Result<Scenario> scenario_of(const WorldOrder& order, std::uint64_t number,
     turn(out.course, 2.0 * std::numbers::pi * draw.uniform());
   }
   if (order.kind == WorldOrder::Kind::Crossing) cross(out.world, out.course, draw);
+  if (order.kind == WorldOrder::Kind::Turning) wander(out.world, out.course, draw);
   if (order.kind == WorldOrder::Kind::Open) {
     // Longer: to and fro.
     const auto once = out.course.points;

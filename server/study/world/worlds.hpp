@@ -26,8 +26,8 @@
 
 namespace roverd::study {
 
-/// What --world says: FILE, or "random:N", "open:N", "crossing:N", "around:N", each with ":SEED" or
-/// without.
+/// What --world says: FILE, or "random:N", "open:N", "crossing:N", "turning:N", "around:N", each
+/// with ":SEED" or without.
 struct WorldOrder {
   enum class Kind {
     File,
@@ -35,6 +35,7 @@ struct WorldOrder {
     Open,      ///< N fields of rough grass in the rain, where nothing stands
     Crossing,  ///< N worlds with people who walk to and fro across the course, 0.5 to 2 m/s
     Around,    ///< N straight ways on which something stands, among other things: driven around
+    Turning,   ///< N worlds with people who wander about the course and turn as they like
   };
   Kind kind = Kind::File;
   std::filesystem::path file;
@@ -47,7 +48,7 @@ base::Result<WorldOrder> parse_worlds(std::string_view text);
 /// One drive. All of it follows from the order and its number.
 struct Scenario {
   std::uint64_t number = 1;
-  std::string kind;   ///< static, moving, open, crossing, around, or the file's world
+  std::string kind;   ///< static, moving, open, crossing, turning, around, or the file's world
   std::string fault;  ///< none, rain, dust, dropouts, sun, dirt, noise or dead
   sim::world::World world;
   Course course;  ///< by sticks: only where it begins to look

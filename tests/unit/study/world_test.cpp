@@ -40,6 +40,12 @@ TEST(WorldOrderTest, AFileANumberOfWorldsOrOpenFields) {
   EXPECT_EQ(crossing->kind, WorldOrder::Kind::Crossing);
   EXPECT_EQ(crossing->count, 5);
 
+  const auto turning = parse_worlds("turning:6:3");
+  ASSERT_TRUE(turning);
+  EXPECT_EQ(turning->kind, WorldOrder::Kind::Turning);
+  EXPECT_EQ(turning->count, 6);
+  EXPECT_EQ(turning->seed, 3U);
+
   const auto around = parse_worlds("around:4:2");
   ASSERT_TRUE(around);
   EXPECT_EQ(around->kind, WorldOrder::Kind::Around);
@@ -62,6 +68,27 @@ TEST(ScenarioTest, PeopleCrossTheCourse) {
     }
     EXPECT_GE(people, 2);
     EXPECT_LE(people, 4);
+  }
+}
+
+TEST(ScenarioTest, PeopleWanderAboutTheCourseAndTurnByNoMoreThanARightAngle) {
+  for (std::uint64_t number = 1; number <= 20; ++number) {
+    const auto s = scenario_of(*parse_worlds("turning:1"), number, {}, {});
+    ASSERT_TRUE(s);
+    EXPECT_EQ(s->kind, "turning");
+    int people = 0;
+    for (const auto& thing : s->world.things) {
+      if (!sim::world::moves(thing.kind)) continue;
+      ++people;
+      ASSERT_GE(thing.points.size(), 7U);
+      for (std::size_t i = 2; i < thing.points.size(); ++i) {
+        const auto before = thing.points[i - 1] - thing.points[i - 2];
+        const auto after = thing.points[i] - thing.points[i - 1];
+        EXPECT_GE(dot(before, after), -1e-9) << number;
+      }
+    }
+    EXPECT_GE(people, 3);
+    EXPECT_LE(people, 5);
   }
 }
 
