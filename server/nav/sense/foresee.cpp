@@ -18,6 +18,9 @@ constexpr double kFarthest_s = 10.0;   // nobody goes straight on for longer; bo
 constexpr double kMostUnsure_m = 0.4;  // what is known of him, is known better than this
 constexpr double kComesNearer_m = 0.01;
 constexpr std::size_t kMostOf = 16;
+constexpr double kTold_s = 0.35;    // from a turn of his until it is told
+constexpr double kFollows_m = 0.3;  // beside the body's width: who walks up so, comes from behind
+constexpr double kLeadsOff = 0.2;   // cosine: by more than 100 degrees nobody turns while he walks
 
 /// Of the moment, in B as it is now.
 struct Foreseeable {
@@ -26,6 +29,7 @@ struct Foreseeable {
   double radius_m;
   double sigma_mps;
   double now_m;  ///< between him and the body, with what it pulls
+  bool behind;   ///< of who drives away from him
 };
 
 /// How much of the twist is driven, by time.
@@ -68,6 +72,34 @@ bool behind(Vec2 at, double radius_m, const Footprint& body,
   return (v > 0.0 ? at.x : -at.x) + radius_m < end;
 }
 
+/// Straight behind it, or going off.
+bool leaves_alone(const Foreseeable& who, const Footprint& body) noexcept {
+  constexpr double kStep_s = 0.05;
+  double aside_m = 0.0;
+  for (const Vec2 c : body.corners()) aside_m = std::max(aside_m, std::abs(c.y));
+  if (who.behind && std::abs(who.at.y) - who.radius_m < aside_m + kFollows_m) return true;
+  const double gains_m = body.distance_m(who.at + kStep_s * who.v) - body.distance_m(who.at);
+  return gains_m > kLeadsOff * kStep_s * std::hypot(who.v.x, who.v.y);
+}
+
+/// Of the twist, so that it stands before he is there who turns towards it now.
+double part_if_he_turns(const Foreseeable& who, const base::BodyTwist& twist, double brake_s,
+                        const ProtectParams& params) noexcept {
+  const double his_mps = params.turn_part * std::hypot(who.v.x, who.v.y);
+  const double far_m = std::hypot(who.at.x, who.at.y);
+  const double sign = twist.linear_mps < 0.0 ? -1.0 : 1.0;
+  const double towards = far_m > 0.0 ? std::max(0.0, sign * who.at.x / far_m) : 1.0;
+  const double nears_mps = towards * std::abs(twist.linear_mps);
+  const double waits_s = kTold_s + params.delay_s;
+  // a λ² + b λ + c = 0
+  const double a = 0.5 * nears_mps * brake_s;
+  const double b = nears_mps * waits_s + his_mps * brake_s;
+  const double c = his_mps * waits_s + params.side_m - who.now_m;
+  if (c >= 0.0) return 0.0;
+  if (a + b + c <= 0.0) return 1.0;
+  return -2.0 * c / (b + std::sqrt(b * b - 4.0 * a * c));
+}
+
 }  // namespace
 
 Foreseen foresee(std::span<const Mover> movers, const Odometry& now, const Footprint& body,
@@ -98,8 +130,8 @@ Foreseen foresee(std::span<const Mover> movers, const Odometry& now, const Footp
   for (const Mover& m : movers) {
     const double age_s = std::max(0.0, base::seconds(now.stamp - m.seen));
     const Vec2 to = m.at + age_s * m.v_mps - Vec2{now.pose.x_m, now.pose.y_m};
-    Foreseeable one{in_body(to), in_body(m.v_mps), m.radius_m, m.sigma_mps, 0.0};
-    if (behind(one.at, one.radius_m, all, twist)) continue;
+    Foreseeable one{in_body(to), in_body(m.v_mps), m.radius_m, m.sigma_mps, 0.0, false};
+    one.behind = behind(one.at, one.radius_m, all, twist);
     one.now_m = all.distance_m(one.at) - one.radius_m;
     const double most_m = (fastest_mps + std::hypot(one.v.x, one.v.y)) * horizon_s(1.0);
     if (one.now_m > most_m + params.foresee_gap_m + kMostUnsure_m) continue;
@@ -116,11 +148,20 @@ Foreseen foresee(std::span<const Mover> movers, const Odometry& now, const Footp
     who[place] = one;
   }
   const double gap_m = std::max(params.foresee_gap_m, params.side_m);
+  const auto tell = [&](std::size_t i, double meets_s) {
+    out.found = true;
+    out.meets_s = meets_s;
+    out.at = who[i].at;
+    out.radius_m = who[i].radius_m;
+    out.sensor = of[i]->sensor;
+    out.age_s = base::seconds(now.stamp - of[i]->seen);
+  };
   const auto may = [&](double part) {
     const Pace brake{std::max(part, goes_on), 0.0, params.delay_s, brake_s};
     // What is slower than λ is taken to be at it at once.
     const Pace keep{std::max(part, goes_on), part, params.delay_s, brake_s};
-    const auto met = [&](const Foreseeable& one) {
+    const auto met = [&](const Foreseeable& one) -> std::optional<double> {
+      if (one.behind) return std::nullopt;
       auto t = meets(one, body, twist, keep, gap_m, params.foresee_s);
       if (!t && whole != nullptr) t = meets(one, *whole, twist, keep, gap_m, params.foresee_s);
       return t;
@@ -130,22 +171,24 @@ Foreseen foresee(std::span<const Mover> movers, const Odometry& now, const Footp
     for (std::size_t i = 0; i < n && (keeps || brakes); ++i) {
       if (const auto t = keeps ? met(who[i]) : std::nullopt) {
         keeps = false;
-        if (!out.found) {
-          out.found = true;
-          out.meets_s = *t;
-          out.at = who[i].at;
-          out.radius_m = who[i].radius_m;
-          out.sensor = of[i]->sensor;
-          out.age_s = base::seconds(now.stamp - of[i]->seen);
-        }
+        if (!out.found) tell(i, *t);
       }
-      brakes = brakes && !meets(who[i], leads, twist, brake, params.side_m, horizon_s(part));
+      brakes = brakes && (who[i].behind ||
+                          !meets(who[i], leads, twist, brake, params.side_m, horizon_s(part)));
     }
     return keeps || brakes;
   };
   for (const double part : kParts) {
     out.part = part;
     if (may(part)) break;
+  }
+  for (std::size_t i = 0; i < n && params.turn_part > 0.0; ++i) {
+    const double his_mps = std::hypot(who[i].v.x, who[i].v.y);
+    const double part = part_if_he_turns(who[i], twist, brake_s, params);
+    if (his_mps <= 0.0 || part >= out.part || leaves_alone(who[i], all)) continue;
+    out.part = part;
+    out.may_turn = true;
+    tell(i, std::max(0.0, who[i].now_m) / his_mps);
   }
   return out;
 }

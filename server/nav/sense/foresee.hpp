@@ -13,6 +13,15 @@
 // stands: then it stands. He may be anywhere within his radius, and within σ t of where he goes.
 // Who walks up from behind is his own business: to stand would help nobody.
 //
+// And he may turn. Where he is not straight behind it, and his way does not lead off from the body
+// he may come straight to it at any moment, and that is told kTold_s later: so it drives no faster
+// than it stands by then, whatever he does (the separation that ISO 13855 asks for, with his own
+// speed),
+//
+//   |v_his| (kTold_s + delay_s + λ brakes) <= room - side_m - cos+ * (way until it stands)
+//
+// cos+: of the angle between where it goes and where he is, 0 where he is not ahead.
+//
 // Of more than 16 the nearest count. Pure; allocates nothing: for the control tick. Without movers
 // nothing is reckoned; with one whom the body may meet up to 12 · 40 looks, more where it brakes
 // for longer than foresee_s: 10 s ahead at most.
@@ -29,10 +38,11 @@
 namespace roverd::nav::sense {
 
 struct Foreseen {
-  double part = 1.0;     ///< of the commanded twist, 0..1
-  bool found = false;    ///< somebody would be met
-  double meets_s = 0.0;  ///< when, if all went on so
-  Vec2 at{};             ///< where he is now, in B: the middle of what was seen of him
+  double part = 1.0;      ///< of the commanded twist, 0..1
+  bool found = false;     ///< somebody would be met
+  bool may_turn = false;  ///< he does not come, but might
+  double meets_s = 0.0;   ///< when, if all went on so; might: if he turned now
+  Vec2 at{};              ///< where he is now, in B: the middle of what was seen of him
   double radius_m = 0.0;
   std::uint8_t sensor = 0;
   double age_s = 0.0;

@@ -176,6 +176,7 @@ struct ProtectParams {
   double dock_m = 0.6;
   double foresee_s = 3.0;
   double foresee_gap_m = 0.30;
+  double turn_part = 1.0;
 };
 
 /// What the guard leaves beside the body of the middle of a cell: a cell may hold its thing
@@ -214,6 +215,11 @@ void fields(V& v, ProtectParams& p) {
                              "foreseen"));
   v("foresee_gap_m", p.foresee_gap_m, 0.0, 3.0,
     base::higher_is_stricter("room left to whoever moves, where it passes him before or behind"));
+  v("turn_part", p.turn_part, 0.0, 2.0,
+    base::higher_is_stricter(
+        "whoever moves nearby may turn towards it at any moment with this part "
+        "of his speed: it drives no faster than it stands by then; 0: only "
+        "who comes is heeded"));
 }
 
 }  // namespace roverd::nav::sense

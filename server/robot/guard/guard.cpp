@@ -58,10 +58,11 @@ bool too_slow(const BodyTwist& t) noexcept {
 }
 
 /// What one would set otherwise where it stops for this; empty: there is no such thing.
-std::string_view key_of(const base::Obstacle& o, bool foreseen, const BodyTwist& wanted,
-                        double reach_m) noexcept {
+std::string_view key_of(const base::Obstacle& o, bool foreseen, bool may_turn,
+                        const BodyTwist& wanted, double reach_m) noexcept {
   if (o.action != base::GuardAction::Stop) return {};
   if (o.what == "drop") return "sense.ground.drop_m";
+  if (o.moves && may_turn) return "sense.protect.turn_part";
   if (o.moves && foreseen) return "sense.protect.foresee_s";
   if (o.what != "unseen") return {};
   const double v = wanted.linear_mps;
@@ -72,7 +73,7 @@ std::string_view key_of(const base::Obstacle& o, bool foreseen, const BodyTwist&
 }
 
 /// @param room_m between the body and it
-std::string sentence(const base::Obstacle& o, double room_m) {
+std::string sentence(const base::Obstacle& o, bool may_turn, double room_m) {
   char text[160];
   const double deg = base::deg_from_rad(o.bearing_rad);
   if (o.what == "blind") {
@@ -87,6 +88,7 @@ std::string sentence(const base::Obstacle& o, double room_m) {
   }
   const char* what = o.what == "drop"     ? "the ground ends"
                      : o.what == "unseen" ? "no sensor has seen the way"
+                     : may_turn           ? "somebody near may turn this way"
                      : o.moves            ? "somebody comes into the way"
                                           : "something stands in the way";
   std::snprintf(text, sizeof text, "%s, %.1f m %s%s%s", what, room_m, where.c_str(),
@@ -273,6 +275,7 @@ void Guard::look_ahead_of_time(Looked& v, const BodyTwist& twist,
     v.age_s = f.age_s;
     v.moves = true;
     v.foreseen = true;
+    v.may_turn = f.may_turn;
     return;
   }
   if (v.limit != Limit::Obstacle) return;
@@ -499,9 +502,10 @@ void Guard::tell(const Looked& v, base::GuardAction action, base::Time now) {
   }
   obstacle_.age_s = v.age_s + (around_ ? base::seconds(now - around_->patch.stamp) : 0.0);
   obstacle_.stopped_since = stopped_since_;
-  obstacle_.reason = sentence(obstacle_, room_m(v));
+  obstacle_.reason = sentence(obstacle_, v.may_turn, room_m(v));
   // Who may help: a person who sees it, or whoever sets how the robot goes there.
-  if (const auto key = key_of(obstacle_, v.foreseen, wanted_, body_.reach_m()); !key.empty()) {
+  const auto key = key_of(obstacle_, v.foreseen, v.may_turn, wanted_, body_.reach_m());
+  if (!key.empty()) {
     const bool unseen = obstacle_.what == "unseen";
     obstacle_.reason += unseen ? ": drive it by hand, or let it creep there (" : " (";
     obstacle_.reason += std::string(key) + ")";

@@ -121,6 +121,7 @@ class Guard {
     bool trailer = false;   ///< it is what the trailer would touch
     bool moves = false;     ///< it is somebody who moves
     bool foreseen = false;  ///< before he is in the way
+    bool may_turn = false;  ///< he does not come, but might
     double radius_m = 0.0;  ///< of whoever was foreseen, about `at`
   };
   Looked look(const base::BodyTwist& twist, bool by_itself, base::Time now) const noexcept;

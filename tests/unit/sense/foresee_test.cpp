@@ -1,7 +1,9 @@
 // Whoever crosses is waited for before his way, or passed in time; nobody else costs anything.
 #include "nav/sense/foresee.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -69,6 +71,99 @@ TEST(Foresee, WhoPassesFarOffOrWalksAwayCostsNothing) {
   EXPECT_EQ(drive(walker({-2.0, 0.0}, {1.5, 0.0}), 1.0, p, 2.0).slowest_mps, 1.0);
 }
 
+/// Somebody walks past, and turns straight towards the robot. That is told as late as it is seen,
+/// and what is commanded is done as late as the robot does it.
+struct Turns {
+  Vec2 from;
+  Vec2 v;
+  double at_s = 1.0;
+};
+/// @return the robot's speed when he is there; empty: he is not, within 8 s, or turned back for it,
+/// or came from behind.
+std::optional<double> speed_when_met(const Turns& turns, double speed_mps, const ProtectParams& p) {
+  constexpr double kStep_s = 0.02;
+  constexpr int kDelay = 10;
+  constexpr double kTold_s = 0.3;
+  Odometry now;
+  now.v_mps = speed_mps;
+  Vec2 him = turns.from;
+  Vec2 v = turns.v;
+  std::vector<double> commanded(kDelay, speed_mps);
+  const double pace = std::hypot(v.x, v.y);
+  for (double t = 0.0; t < 8.0; t += kStep_s) {
+    const Vec2 to{now.pose.x_m - him.x, -him.y};
+    const bool walks_on = t < turns.at_s;
+    if (!walks_on && dot(turns.v, to) < 0.0) return std::nullopt;
+    if (!walks_on) v = pace / std::hypot(to.x, to.y) * to;
+    him = him + kStep_s * v;
+    now.stamp = at(t);
+    Mover told = walker(him, t < turns.at_s + kTold_s ? turns.v : v);
+    told.seen = at(t);
+    commanded.push_back(speed_mps * foresee({&told, 1}, now, kBody, {speed_mps, 0.0}, p).part);
+    const double goal = commanded[commanded.size() - kDelay];
+    now.v_mps = goal < now.v_mps ? std::max(goal, now.v_mps - kStep_s * p.decel_mps2)
+                                 : std::min(goal, now.v_mps + kStep_s * 0.5);
+    now.pose.x_m += kStep_s * now.v_mps;
+    const Vec2 off{him.x - now.pose.x_m, him.y};
+    if (off.x < -0.5) return std::nullopt;
+    if (kBody.distance_m(off) <= told.radius_m) return now.v_mps;
+  }
+  return std::nullopt;
+}
+
+TEST(Foresee, ItStandsByThenWhoeverTurnsTowardsIt) {
+  const ProtectParams p;
+  ProtectParams blunt;
+  blunt.turn_part = 0.0;
+  int met = 0;
+  int met_driving = 0;
+  for (const double speed : {0.5, 1.0, 1.3}) {
+    for (const double his : {0.6, 1.2, 1.7, 2.0}) {
+      for (const double beside_m : {1.0, 1.7, 2.4, 3.2}) {
+        for (const double ahead_m : {2.0, 4.0, 6.0}) {
+          // Towards it at first, and along beside.
+          for (const Vec2 way : {his * Vec2{-1.0, 0.0}, his * Vec2{-0.8, 0.6}}) {
+            for (double at_s = 0.3; at_s < 3.0; at_s += 0.3) {
+              const Turns turns{{ahead_m, beside_m}, way, at_s};
+              const auto kept = speed_when_met(turns, speed, p);
+              const auto not_kept = speed_when_met(turns, speed, blunt);
+              met += kept ? 1 : 0;
+              met_driving += not_kept && *not_kept > 0.02 ? 1 : 0;
+              // Who is nearer than brakes are quick at the very first look, cannot be stood before.
+              if (at_s < 0.6 + speed / p.decel_mps2) continue;
+              EXPECT_LE(kept.value_or(0.0), 0.02)
+                  << speed << " " << his << " " << beside_m << " " << ahead_m << " " << at_s;
+            }
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(met, 100);
+  EXPECT_GT(met_driving, 50) << "without the rule they are met: that is what it is for";
+}
+
+TEST(Foresee, WhoWalksAlongBesideItSlowsItAndDoesNotStopIt) {
+  const ProtectParams p;
+  const auto part = [&](Vec2 his_place, Vec2 v, double speed) {
+    const Odometry now{at(0.0), {}, speed, 0.0, {}};
+    return foresee(std::vector{walker(his_place, v)}, now, kBody, {speed, 0.0}, p);
+  };
+  const Foreseen abreast = part({0.0, 1.9}, {0.7, 0.0}, 0.7);
+  EXPECT_TRUE(abreast.may_turn);
+  EXPECT_NEAR(abreast.at.y, 1.9, 1e-9);
+  // 1.25 m from edge to edge: 0.7 (0.35 + 0.2 + λ 0.7 / 0.6) = 1.25 - 0.08
+  EXPECT_NEAR(abreast.part, (1.17 / 0.7 - 0.55) * 0.6 / 0.7, 1e-6);
+  // Slower, he is far from it; and who leads the way goes off.
+  EXPECT_EQ(part({0.0, 1.9}, {0.4, 0.0}, 0.7).part, 1.0);
+  EXPECT_EQ(part({2.5, 0.3}, {1.0, 0.0}, 1.0).part, 1.0);
+  // Who overtakes it beside may turn into its flank; who walks up straight behind it, runs into it.
+  EXPECT_TRUE(part({-1.3, 1.3}, {1.9, 0.0}, 0.5).may_turn);
+  EXPECT_FALSE(part({-1.3, 0.3}, {1.9, 0.0}, 0.5).found);
+  // So near that it would not stand in time at any speed, it stands.
+  EXPECT_EQ(part({0.0, 1.2}, {1.2, 0.0}, 1.0).part, 0.0);
+}
+
 TEST(Foresee, WhoComesStraightAtItIsStoodBefore) {
   const Foreseen f = foresee(std::vector{walker({2.5, 0.0}, {-1.0, 0.0})},
                              Odometry{at(0.0), {}, 0.0, 0.0, {}}, kBody, {1.0, 0.0}, {});
@@ -109,6 +204,7 @@ TEST(Foresee, AStickThatIsDrawnBackLeavesTheSpeedThatIsThere) {
 
 TEST(Foresee, WhatItPullsDoesNotPassBeforeHimEither) {
   ProtectParams p;
+  p.turn_part = 0.0;
   const Footprint whole = Footprint::box(3.5, 0.8, 3.0);
   const Odometry now{at(0.0), {}, 1.0, 0.0, {}};
   // Two metres behind the body's end is where he comes to its way: onto the trailer.

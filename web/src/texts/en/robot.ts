@@ -142,6 +142,7 @@ export const robot = {
   rb_picture_old_alone: 'the picture of the surroundings is too old',
   rb_in_way: 'something stands in the way, {where}',
   rb_comes_in_way: 'somebody comes into the way, {where}',
+  rb_may_turn: 'somebody near may turn this way, {where}',
   rb_ground_ends: 'the ground ends, {where}',
   rb_way_unseen: 'no sensor has seen the way, {where}',
   rb_seen_by: '{what}, seen by {sensor}',

@@ -139,6 +139,7 @@ export const robot = {
   rb_picture_old_alone: 'pilt ümbrusest on liiga vana',
   rb_in_way: 'midagi on tee peal ees, {where}',
   rb_comes_in_way: 'keegi tuleb tee peale, {where}',
+  rb_may_turn: 'keegi lähedal võib siiapoole pöörata, {where}',
   rb_ground_ends: 'maapind lõpeb, {where}',
   rb_way_unseen: 'ükski andur pole teed näinud, {where}',
   rb_seen_by: '{what}, seda nägi {sensor}',

@@ -140,6 +140,7 @@ export const robot = {
   rb_picture_old_alone: 'kuva ympäristöstä on liian vanha',
   rb_in_way: 'jotakin on tiellä, {where}',
   rb_comes_in_way: 'joku tulee tielle, {where}',
+  rb_may_turn: 'lähellä oleva voi kääntyä tännepäin, {where}',
   rb_ground_ends: 'maa päättyy, {where}',
   rb_way_unseen: 'mikään anturi ei ole nähnyt tietä, {where}',
   rb_seen_by: '{what}, sen näki {sensor}',

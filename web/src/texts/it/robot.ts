@@ -144,6 +144,7 @@ export const robot = {
   rb_picture_old_alone: 'l’immagine dei dintorni è troppo vecchia',
   rb_in_way: 'qualcosa è sulla via, {where}',
   rb_comes_in_way: 'qualcuno entra nella via, {where}',
+  rb_may_turn: 'qualcuno vicino può girare da questa parte, {where}',
   rb_ground_ends: 'il terreno finisce, {where}',
   rb_way_unseen: 'nessun sensore ha visto la via, {where}',
   rb_seen_by: '{what}, visto da {sensor}',

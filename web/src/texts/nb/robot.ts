@@ -141,6 +141,7 @@ export const robot = {
   rb_picture_old_alone: 'bildet av omgivelsene er for gammelt',
   rb_in_way: 'noe står i veien, {where}',
   rb_comes_in_way: 'noen kommer inn i veien, {where}',
+  rb_may_turn: 'noen i nærheten kan svinge hit, {where}',
   rb_ground_ends: 'bakken slutter, {where}',
   rb_way_unseen: 'ingen sensor har sett veien, {where}',
   rb_seen_by: '{what}, sett av {sensor}',
