@@ -15,6 +15,7 @@ constexpr double kPlace_m = 0.1;
 constexpr std::int32_t kHangs = 2;  // cells so far apart are of one thing
 constexpr double kEdge_m = 0.3;     // so near to the end of the range a thing is cut off
 constexpr double kWidest_m = 1.6;
+constexpr std::size_t kWeather = 24;     // held back in one piece, by more than edges: dust, rain
 constexpr std::uint32_t kFewVoxels = 3;  // voxels of a thing
 constexpr std::size_t kThings = 64;
 constexpr std::size_t kSpread = 4;
@@ -88,25 +89,29 @@ void Movers::gather(const Reduced& in, const Grid& before) {
   const double c = std::cos(in.pose.yaw_rad);
   const double s = std::sin(in.pose.yaw_rad);
   const double far_m = range_m_ - kEdge_m;
-  for (const Voxel& v : in.voxels) {
-    if (v.kind != Kind::Obstacle) continue;
-    const auto x = static_cast<double>(v.x_m);
-    const auto y = static_cast<double>(v.y_m);
-    if (x * x + y * y > far_m * far_m) continue;
-    const Vec2 at{in.pose.x_m + c * x - s * y, in.pose.y_m + s * x + c * y};
-    const Cell cell = cell_at(at);
-    points_.push_back(at);
-    of_.push_back(cell);
-    Place& p = place(cell.x, cell.y);
-    if (p.piece == piece_) continue;
-    if (now_s_ - static_cast<double>(p.last_s) > kGap_s) {
-      p.first_s = static_cast<float>(now_s_);
-      p.was_free = before.at(at.x, at.y, in.stamp) == Known::Free;
+  for (const Kind kind : {Kind::Obstacle, Kind::Passing}) {
+    believed_ = kind == Kind::Obstacle ? 0 : points_.size();
+    for (const Voxel& v : in.voxels) {
+      if (v.kind != kind) continue;
+      const auto x = static_cast<double>(v.x_m);
+      const auto y = static_cast<double>(v.y_m);
+      if (x * x + y * y > far_m * far_m) continue;
+      const Vec2 at{in.pose.x_m + c * x - s * y, in.pose.y_m + s * x + c * y};
+      const Cell cell = cell_at(at);
+      points_.push_back(at);
+      of_.push_back(cell);
+      Place& p = place(cell.x, cell.y);
+      if (p.piece == piece_) continue;
+      const bool anew = now_s_ - static_cast<double>(p.last_s) > kGap_s;
+      if (anew) p.was_free = before.at(at.x, at.y, in.stamp) == Known::Free;
+      p.piece = piece_;
+      p.thing = still_about(cell.x, cell.y) ? -1 : 0;
+      if (kind == Kind::Passing) continue;  // never a thing by itself, nor still
+      if (anew) p.first_s = static_cast<float>(now_s_);
+      p.last_s = static_cast<float>(now_s_);
+      p.thing = -1;
+      cells_.push_back(cell);
     }
-    p.last_s = static_cast<float>(now_s_);
-    p.piece = piece_;
-    p.thing = -1;
-    cells_.push_back(cell);
   }
   std::erase_if(cells_, [this](const Cell& cell) { return still_about(cell.x, cell.y); });
   for (const Cell& cell : cells_) place(cell.x, cell.y).thing = 0;
@@ -136,10 +141,19 @@ void Movers::part() {
   }
   spread_.resize(std::max(spread_.size(), things_.size()));
   for (auto& some : spread_) some.clear();
+  // What is held back at edges would bend his way; of who walks in dust it is the most of him.
+  const bool weather = points_.size() - believed_ >= kWeather;
+  balance_.assign(things_.size(), 0);
+  const auto thing_of = [this](std::size_t i) { return place(of_[i].x, of_[i].y).thing; };
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    const std::int32_t number = place(of_[i].x, of_[i].y).thing;
+    const std::int32_t number = thing_of(i);
+    if (number > 0) balance_[static_cast<std::size_t>(number - 1)] += i < believed_ ? 1 : -1;
+  }
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const std::int32_t number = thing_of(i);
     if (number <= 0) continue;
     const auto thing = static_cast<std::size_t>(number - 1);
+    if (i >= believed_ && (!weather || balance_[thing] > 0)) continue;
     Box& b = things_[thing];
     const Vec2 p = points_[i];
     b = {std::min(b.x0, p.x), std::max(b.x1, p.x), std::min(b.y0, p.y), std::max(b.y1, p.y),

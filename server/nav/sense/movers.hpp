@@ -3,6 +3,9 @@
 //
 //   obstacles, without what has stood for kStill_s ─▶ things up to 1.6 m wide ─▶ tracks ─▶ movers
 //
+// Who walks in dust or rain is half hidden by it, and the rest of him comes and goes: there, what
+// is held back (Passing) beside an obstacle counts where it is the most of a thing.
+//
 // Of a track the four sides of its box (along x and y of O) are kept for 0.7 s, and a straight line
 // is laid through each. A side that is uncovered by and by, or hidden, moves while the thing
 // stands; so both opposite sides must go the same way, faster than kLeast_mps beyond twice what
@@ -124,6 +127,8 @@ class Movers {
   std::vector<Cell> cells_;   ///< of this piece, that are not still
   std::vector<Vec2> points_;  ///< voxels of this piece, in O
   std::vector<Cell> of_;      ///< the cell of each
+  std::size_t believed_ = 0;  ///< of them, the first; the others are held back
+  std::vector<int> balance_;  ///< of each thing: points believed less those held back
   std::vector<Box> things_;
   std::vector<std::vector<Vec2>> spread_;  ///< some points of each thing
   std::vector<Cell> open_;

@@ -1,6 +1,7 @@
 // Whoever walks is told with his velocity; what stands, however it comes to be seen, is not.
 #include "nav/sense/movers.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -16,10 +17,12 @@ using Blocks = std::function<std::vector<Block>(double)>;
 using Body = std::function<Pose2(double)>;
 
 /// A scanner at 25 Hz before the body, for so long. @param late_s between its first piece and the
-/// others @param clear_s for so long rays that meet nothing see the way free
+/// others @param clear_s for so long rays that meet nothing see the way free @param dust_per_m of
+/// each ray's way, the share that ends in a grain
 /// @return who moves at the end of each piece
 std::vector<std::vector<Mover>> watch(double lasts_s, const Body& body, const Blocks& blocks,
-                                      double late_s = 0.0, double clear_s = 1e9) {
+                                      double late_s = 0.0, double clear_s = 1e9,
+                                      double dust_per_m = 0.0) {
   SensorSetup eye;
   eye.name = "eye";
   eye.mount = {.x_m = 0.45, .z_m = 0.3};
@@ -29,6 +32,7 @@ std::vector<std::vector<Mover>> watch(double lasts_s, const Body& body, const Bl
   EXPECT_TRUE(chain.has_value());
   std::mt19937 random(3);
   std::normal_distribution<double> noise(0.0, 0.01);
+  std::exponential_distribution<double> ways(1.0);
   std::vector<std::vector<Mover>> out;
   const Rays rays = planar();
   for (double since = 0.0; since < lasts_s; since += 0.04) {
@@ -42,7 +46,11 @@ std::vector<std::vector<Mover>> watch(double lasts_s, const Body& body, const Bl
         random, 20.0);
     for (base::SightPoint& p : sight.points) {
       const double r = std::hypot(double(p.x_m), double(p.y_m));
-      const double k = p.echo == base::Echo::Hit ? 1.0 + noise(random) / r : 6.0 / r;
+      const bool hit = p.echo == base::Echo::Hit;
+      const double grain_m = dust_per_m > 0.0 ? ways(random) / dust_per_m : 1e9;
+      const bool dusty = grain_m < (hit ? r : 6.0);
+      const double k = dusty ? grain_m / r : hit ? 1.0 + noise(random) / r : 6.0 / r;
+      if (dusty) p.echo = base::Echo::Hit;
       if (p.echo != base::Echo::Hit) {
         p.echo = since < clear_s ? base::Echo::Clear : base::Echo::Unknown;
       }
@@ -112,6 +120,38 @@ TEST(Movers, WhoComesIsToldThoughNobodySawFreeWhatHeLeft) {
     EXPECT_NEAR(seen.back().front().v_mps.x, -1.2, 0.25) << side;
     EXPECT_NEAR(seen.back().front().v_mps.y, 0.0, 0.25) << side;
   }
+}
+
+//   Half of what is met of him is held back, other places in each piece.
+TEST(Movers, WhoComesThroughDustIsToldBeforeHeIsThere) {
+  for (const double dust_per_m : {0.02, 0.04}) {
+    for (const double side : {-1.0, 1.0}) {
+      const auto seen = watch(
+          2.6,
+          [](double t) {
+            return Pose2{0.5 * t, 0.0, 0.0};
+          },
+          [&](double t) { return std::vector{person(1.9, side * (5.2 - 1.7 * t))}; }, 0.0, 1e9,
+          dust_per_m);
+      const auto comes = [&](const std::vector<Mover>& told) {
+        return std::ranges::any_of(told, [&](const Mover& m) { return -side * m.v_mps.y > 1.0; });
+      };
+      const auto first = std::ranges::find_if(seen, comes);
+      EXPECT_LT(0.04 * double(first - seen.begin()), 1.6) << dust_per_m << " " << side;
+    }
+  }
+}
+
+TEST(Movers, DustAboutWhatStandsIsNobody) {
+  const Blocks yard = [](double) {
+    return std::vector<Block>{{2.0, 2.6, -1.5, -1.0, -1.0, 1.0},
+                              {4.0, 4.1, 1.0, 1.1, -1.0, 1.0},
+                              {5.0, 5.8, -2.0, -1.9, -1.0, 1.0}};
+  };
+  std::size_t told = 0;
+  for (const auto& one : watch(8.0, stands, yard, 0.0, 1e9, 0.04)) told += one.size();
+  for (const auto& one : watch(5.0, drives, yard, 0.0, 1e9, 0.04)) told += one.size();
+  EXPECT_EQ(told, 0U);
 }
 
 TEST(Movers, HeIsToldFromARobotThatDrives) {
