@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "base/angle.hpp"
 #include "nav/sense/sweep.hpp"
 
 namespace roverd::nav::sense {
@@ -20,7 +21,7 @@ constexpr double kComesNearer_m = 0.01;
 constexpr std::size_t kMostOf = 16;
 constexpr double kTold_s = 0.35;    // from a turn of his until it is told
 constexpr double kFollows_m = 0.3;  // beside the body's width: who walks up so, comes from behind
-constexpr double kLeadsOff = 0.2;   // cosine: by more than 100 degrees nobody turns while he walks
+constexpr double kTurns_rad = base::rad_from_deg(100.0);  // by more nobody turns while he walks
 
 /// Of the moment, in B as it is now.
 struct Foreseeable {
@@ -72,32 +73,42 @@ bool behind(Vec2 at, double radius_m, const Footprint& body,
   return (v > 0.0 ? at.x : -at.x) + radius_m < end;
 }
 
-/// Straight behind it, or going off.
-bool leaves_alone(const Foreseeable& who, const Footprint& body) noexcept {
-  constexpr double kStep_s = 0.05;
+/// Behind who drives away from him, and no wider than its way: he runs into it himself.
+bool follows(const Foreseeable& who, const Footprint& body) noexcept {
   double aside_m = 0.0;
   for (const Vec2 c : body.corners()) aside_m = std::max(aside_m, std::abs(c.y));
-  if (who.behind && std::abs(who.at.y) - who.radius_m < aside_m + kFollows_m) return true;
-  const double gains_m = body.distance_m(who.at + kStep_s * who.v) - body.distance_m(who.at);
-  return gains_m > kLeadsOff * kStep_s * std::hypot(who.v.x, who.v.y);
+  return who.behind && std::abs(who.at.y) - who.radius_m < aside_m + kFollows_m;
 }
 
-/// Of the twist, so that it stands before he is there who turns towards it now.
-double part_if_he_turns(const Foreseeable& who, const base::BodyTwist& twist, double brake_s,
+/// How fast he comes nearer who turns towards the body now, as far as anybody does.
+double nears_if_he_turns_mps(const Foreseeable& who, const Footprint& body) noexcept {
+  constexpr double kStep_s = 0.01;
+  const double his_mps = std::hypot(who.v.x, who.v.y);
+  if (his_mps <= 0.0) return 0.0;
+  const double gains_m = body.distance_m(who.at + kStep_s * who.v) - body.distance_m(who.at);
+  const double off_rad = std::acos(std::clamp(-gains_m / (kStep_s * his_mps), -1.0, 1.0));
+  return his_mps * std::cos(std::max(0.0, off_rad - kTurns_rad));
+}
+
+/// How fast the whole twist brings the body nearer to where he is; negative: it leaves him.
+double nears_mps(const Foreseeable& who, const Footprint& body,
+                 const base::BodyTwist& twist) noexcept {
+  constexpr double kStep_s = 0.01;
+  return (body.distance_m(who.at) - body.distance_m(seen_after(who.at, twist, kStep_s))) / kStep_s;
+}
+
+/// Of the twist, so that it stands before he is there: f(λ) = a λ² + b λ + c <= 0.
+/// @param his_mps towards it @param its_mps towards him, at λ = 1
+double part_if_he_turns(const Foreseeable& who, double his_mps, double its_mps, double brake_s,
                         const ProtectParams& params) noexcept {
-  const double his_mps = params.turn_part * std::hypot(who.v.x, who.v.y);
-  const double far_m = std::hypot(who.at.x, who.at.y);
-  const double sign = twist.linear_mps < 0.0 ? -1.0 : 1.0;
-  const double towards = far_m > 0.0 ? std::max(0.0, sign * who.at.x / far_m) : 1.0;
-  const double nears_mps = towards * std::abs(twist.linear_mps);
   const double waits_s = kTold_s + params.delay_s;
-  // a λ² + b λ + c = 0
-  const double a = 0.5 * nears_mps * brake_s;
-  const double b = nears_mps * waits_s + his_mps * brake_s;
+  const double a = 0.5 * its_mps * brake_s;
+  const double b = its_mps * waits_s + his_mps * brake_s;
   const double c = his_mps * waits_s + params.side_m - who.now_m;
   if (c >= 0.0) return 0.0;
   if (a + b + c <= 0.0) return 1.0;
-  return -2.0 * c / (b + std::sqrt(b * b - 4.0 * a * c));
+  // Begins below zero and ends above it: of its roots the first is within.
+  return -2.0 * c / (b + std::sqrt(std::max(0.0, b * b - 4.0 * a * c)));
 }
 
 }  // namespace
@@ -132,6 +143,7 @@ Foreseen foresee(std::span<const Mover> movers, const Odometry& now, const Footp
     const Vec2 to = m.at + age_s * m.v_mps - Vec2{now.pose.x_m, now.pose.y_m};
     Foreseeable one{in_body(to), in_body(m.v_mps), m.radius_m, m.sigma_mps, 0.0, false};
     one.behind = behind(one.at, one.radius_m, all, twist);
+    if (one.behind && (params.turn_part <= 0.0 || follows(one, all))) continue;
     one.now_m = all.distance_m(one.at) - one.radius_m;
     const double most_m = (fastest_mps + std::hypot(one.v.x, one.v.y)) * horizon_s(1.0);
     if (one.now_m > most_m + params.foresee_gap_m + kMostUnsure_m) continue;
@@ -148,8 +160,11 @@ Foreseen foresee(std::span<const Mover> movers, const Odometry& now, const Footp
     who[place] = one;
   }
   const double gap_m = std::max(params.foresee_gap_m, params.side_m);
+  std::size_t found = kMostOf;
   const auto tell = [&](std::size_t i, double meets_s) {
+    found = i;
     out.found = true;
+    out.room_m = who[i].now_m;
     out.meets_s = meets_s;
     out.at = who[i].at;
     out.radius_m = who[i].radius_m;
@@ -183,10 +198,13 @@ Foreseen foresee(std::span<const Mover> movers, const Odometry& now, const Footp
     if (may(part)) break;
   }
   for (std::size_t i = 0; i < n && params.turn_part > 0.0; ++i) {
-    const double his_mps = std::hypot(who[i].v.x, who[i].v.y);
-    const double part = part_if_he_turns(who[i], twist, brake_s, params);
-    if (his_mps <= 0.0 || part >= out.part || leaves_alone(who[i], all)) continue;
+    const double his_mps = params.turn_part * nears_if_he_turns_mps(who[i], all);
+    const double its_mps = nears_mps(who[i], all, twist);
+    const double part = part_if_he_turns(who[i], his_mps, its_mps, brake_s, params);
+    if (his_mps <= 0.0 || part >= out.part) continue;
     out.part = part;
+    out.leaves = its_mps < 0.0;
+    if (i == found && !out.may_turn) continue;  // he comes anyhow
     out.may_turn = true;
     tell(i, std::max(0.0, who[i].now_m) / his_mps);
   }

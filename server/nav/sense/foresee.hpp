@@ -13,14 +13,17 @@
 // stands: then it stands. He may be anywhere within his radius, and within σ t of where he goes.
 // Who walks up from behind is his own business: to stand would help nobody.
 //
-// And he may turn. Where he is not straight behind it, and his way does not lead off from the body
-// he may come straight to it at any moment, and that is told kTold_s later: so it drives no faster
-// than it stands by then, whatever he does (the separation that ISO 13855 asks for, with his own
-// speed),
+// And he may turn. Whoever is not straight behind it may turn towards it at any moment by up to
+// 100 degrees, and is told kTold_s later: so it drives no faster than it stands by then (the
+// separation that ISO 13855 asks for, with his own speed),
 //
-//   |v_his| (kTold_s + delay_s + λ brakes) <= room - side_m - cos+ * (way until it stands)
+//   v_his (kTold_s + delay_s + λ brakes) + v_its λ (kTold_s + delay_s + λ brakes / 2)
+//       <= room - side_m
 //
-// cos+: of the angle between where it goes and where he is, 0 where he is not ahead.
+// v_his: turn_part |v| cos(what is left of the angle to the body after 100 degrees), v_its: how
+// fast the twist brings the body nearer to where he is, negative where it leaves him. Smooth in
+// where he is and how he goes, so beside whoever walks along it does not speed up and brake by
+// turns.
 //
 // Of more than 16 the nearest count. Pure; allocates nothing: for the control tick. Without movers
 // nothing is reckoned; with one whom the body may meet up to 12 · 40 looks, more where it brakes
@@ -41,7 +44,9 @@ struct Foreseen {
   double part = 1.0;      ///< of the commanded twist, 0..1
   bool found = false;     ///< somebody would be met
   bool may_turn = false;  ///< he does not come, but might
+  bool leaves = false;    ///< that he may turn limits it, but the twist leads away from him
   double meets_s = 0.0;   ///< when, if all went on so; might: if he turned now
+  double room_m = 0.0;    ///< between him and the body, with what it pulls
   Vec2 at{};              ///< where he is now, in B: the middle of what was seen of him
   double radius_m = 0.0;
   std::uint8_t sensor = 0;

@@ -53,6 +53,13 @@ BodyTwist probe_of(const BodyTwist& wanted) noexcept {
   return part > 1e-6 ? times(wanted, 1.0 / part) : wanted;
 }
 
+/// Of the twist, at a hand's creep speed.
+double creeps_part(const BodyTwist& twist, const nav::sense::ProtectParams& params) noexcept {
+  const double by_way = params.creep_mps / std::max(std::abs(twist.linear_mps), 1e-6);
+  const double by_turn = params.creep_turn_radps / std::max(std::abs(twist.angular_radps), 1e-6);
+  return std::min({1.0, by_way, by_turn});
+}
+
 bool too_slow(const BodyTwist& t) noexcept {
   return std::abs(t.linear_mps) < kLeast_mps && std::abs(t.angular_radps) < kLeast_radps;
 }
@@ -219,7 +226,7 @@ Guard::Looked Guard::look(const BodyTwist& twist, bool by_itself, base::Time now
                  spared_ ? &*spared_ : nullptr, &around_->marks)};
     look_behind(v, twist, params);
     if (ahead) look_along_rays(v, twist, params);
-    look_ahead_of_time(v, twist, params);
+    look_ahead_of_time(v, twist, by_itself, params);
     return v;
   }
   // Nothing is known: as if the very next step were unseen.
@@ -256,18 +263,20 @@ Guard::Looked Guard::look_where_lost(const BodyTwist& twist,
 }
 
 /// Who moves: before he is in the way; and who is in it, is known to go.
-void Guard::look_ahead_of_time(Looked& v, const BodyTwist& twist,
+void Guard::look_ahead_of_time(Looked& v, const BodyTwist& twist, bool by_itself,
                                const nav::sense::ProtectParams& params) const noexcept {
   if (around_->movers.empty() || params.foresee_s <= 0.0) return;
-  const nav::sense::Foreseen f = nav::sense::foresee(around_->movers, odometry_, body_, twist,
-                                                     params, whole_ ? &*whole_ : nullptr);
+  nav::sense::Foreseen f = nav::sense::foresee(around_->movers, odometry_, body_, twist, params,
+                                               whole_ ? &*whole_ : nullptr);
+  // A person who drives may always creep away: also from who walks beside it, often himself.
+  if (f.leaves && !by_itself) f.part = std::max(f.part, creeps_part(twist, params));
   if (f.part < v.part) {
     v = {};
     v.part = f.part;
     v.limit = Limit::Obstacle;
     v.found = true;
     v.touch_s = f.meets_s;
-    v.distance_m = std::abs(twist.linear_mps) * f.meets_s;
+    v.distance_m = f.may_turn ? f.room_m : std::abs(twist.linear_mps) * f.meets_s;
     v.at = f.at;
     v.radius_m = f.radius_m;
     v.bearing_rad = std::atan2(f.at.y, f.at.x);
@@ -484,7 +493,8 @@ void Guard::forget() noexcept {
 /// origin: where the trailer is, is known less well.
 double Guard::room_m(const Looked& v) const noexcept {
   if (v.trailer) return std::hypot(v.at.x, v.at.y);
-  return std::max(0.0, body_.distance_m(v.at) - v.radius_m);
+  const nav::sense::Footprint& body = v.may_turn && whole_ ? *whole_ : body_;
+  return std::max(0.0, body.distance_m(v.at) - v.radius_m);
 }
 
 void Guard::tell(const Looked& v, base::GuardAction action, base::Time now) {

@@ -130,7 +130,7 @@ class Guard {
   Looked told_by(const RaysStop& said, double within_m) const noexcept;
   void look_along_rays(Looked& v, const base::BodyTwist& twist,
                        const nav::sense::ProtectParams& params) const noexcept;
-  void look_ahead_of_time(Looked& v, const base::BodyTwist& twist,
+  void look_ahead_of_time(Looked& v, const base::BodyTwist& twist, bool by_itself,
                           const nav::sense::ProtectParams& params) const noexcept;
   void look_behind(Looked& v, const base::BodyTwist& twist,
                    const nav::sense::ProtectParams& params) const noexcept;

@@ -167,6 +167,7 @@ void wander(sim::world::World& world, const Course& course, Draw& draw) {
                         there.at.north_m + off_m * std::sin(off_rad)};
     double yaw_rad = draw.uniform(-std::numbers::pi, std::numbers::pi);
     sim::world::Thing t = person(draw, 0.8, 1.0);
+    t.pause_s += 1.0;  // before he turns back
     t.points = {at};
     for (int leg = 6 + draw.below(5); leg > 0; --leg) {
       const double leg_m = draw.uniform(1.0, 4.0);

@@ -88,6 +88,36 @@ TEST_F(Seeing, WhoCrossesIsWaitedForAndTheMissionGoesOn) {
   EXPECT_GT(pose.x_m, him.at.x + 1.0) << "it went on";
 }
 
+TEST_F(Seeing, BesideWhoeverMightTurnItStandsAndAHandMayCreepAway) {
+  field.run(8.0);
+  ASSERT_TRUE(field.ask(Arm{}));
+  ASSERT_TRUE(field.ask(SetMode{Mode::Manual}));
+  field.let_go();
+  nav::sense::Mover him;
+  him.v_mps = {1.2, 0.0};
+  const auto hold = [&](double v, double seconds, double ahead_m) {
+    for (int i = 0; i < seconds * 50.0; ++i) {
+      // Abreast, or a little behind, as he goes along.
+      him.at = {pose.x_m + ahead_m, pose.y_m + 0.5 * VehicleWidth + him.radius_m + 0.5};
+      him.seen = field.now;
+      walker = him;
+      field.robot.request(Drive{{v, 0.0}, true}, field.now + std::chrono::seconds(1), {});
+      field.tick();
+    }
+  };
+  hold(0.5, 2.0, 0.0);
+  EXPECT_FALSE(field.moves());
+  const auto& o = field.robot.snapshot()->obstacle;
+  ASSERT_TRUE(o);
+  EXPECT_TRUE(o->reason.starts_with("somebody near may turn this way, 0.5 m to the left"))
+      << o->reason;
+  EXPECT_NE(o->reason.find("sense.protect.turn_part"), std::string::npos) << o->reason;
+  EXPECT_NEAR(o->distance_m, 0.5, 0.05);
+  hold(0.5, 3.0, -0.5 * VehicleLength - 0.2);
+  EXPECT_TRUE(field.moves());
+  EXPECT_LT(field.command.twist.linear_mps, 0.3);
+}
+
 TEST_F(Seeing, TheSticksAreStoppedTooAndMayDriveAway) {
   field.run(8.0);
   ASSERT_TRUE(field.ask(Arm{}));
