@@ -12,6 +12,7 @@
 
 #include "lzf.hpp"
 #include "nav/sense/chain.hpp"
+#include "nav/sense/foresee.hpp"
 #include "nav/sense/marks.hpp"
 #include "nav/sense/polar.hpp"
 #include "nav/sense/protect.hpp"
@@ -247,4 +248,28 @@ BENCHMARK_CAPTURE(one_look, pivot, base::BodyTwist{0.0, 0.6})
     ->Unit(benchmark::kMicrosecond);
 
 }  // namespace
+/// So many who walk about the robot, each of whom it might meet.
+void one_look_at_people(benchmark::State& state) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> place(-6.0, 6.0);
+  std::uniform_real_distribution<double> pace(-1.5, 1.5);
+  std::vector<Mover> people(static_cast<std::size_t>(state.range(0)));
+  for (Mover& m : people) {
+    m.at = {place(random), place(random)};
+    m.v_mps = {pace(random), pace(random)};
+  }
+  Odometry now;
+  now.v_mps = 1.3;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(foresee(people, now, kRobot, {1.3, 0.2}, {}));
+  }
+}
+BENCHMARK(one_look_at_people)
+    ->Arg(0)
+    ->Arg(1)
+    ->Arg(4)
+    ->Arg(16)
+    ->Arg(64)
+    ->Unit(benchmark::kMicrosecond);
+
 }  // namespace roverd::nav::sense
