@@ -219,6 +219,8 @@ TEST(Foresee, BesideWhatItPullsHeIsAsNear) {
   EXPECT_TRUE(f.may_turn);
   EXPECT_NEAR(f.room_m, 1.7 - 0.4 - 0.25, 1e-9);
   EXPECT_NEAR(f.meets_s, f.room_m / 0.9, 1e-3);
+  // He goes along it the other way: off from the body, and no farther from what it pulls.
+  EXPECT_LT(look_at({-2.5, 1.9}, {-0.9, 0.0}, {0.6, 0.0}, {}, &whole).part, 0.9);
 }
 
 TEST(Foresee, WhoComesAnyhowIsNotSaidToTurn) {
