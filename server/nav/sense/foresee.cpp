@@ -197,13 +197,15 @@ Foreseen foresee(std::span<const Mover> movers, const Odometry& now, const Footp
     out.part = part;
     if (may(part)) break;
   }
+  out.unless_left = out.part;
   for (std::size_t i = 0; i < n && params.turn_part > 0.0; ++i) {
     const double his_mps = params.turn_part * nears_if_he_turns_mps(who[i], all);
     const double its_mps = nears_mps(who[i], all, twist);
     const double part = part_if_he_turns(who[i], his_mps, its_mps, brake_s, params);
-    if (his_mps <= 0.0 || part >= out.part) continue;
+    if (his_mps <= 0.0) continue;
+    if (its_mps >= 0.0) out.unless_left = std::min(out.unless_left, part);
+    if (part >= out.part) continue;
     out.part = part;
-    out.leaves = its_mps < 0.0;
     if (i == found && !out.may_turn) continue;  // he comes anyhow
     out.may_turn = true;
     tell(i, std::max(0.0, who[i].now_m) / his_mps);

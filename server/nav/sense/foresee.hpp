@@ -41,13 +41,13 @@
 namespace roverd::nav::sense {
 
 struct Foreseen {
-  double part = 1.0;      ///< of the commanded twist, 0..1
-  bool found = false;     ///< somebody would be met
-  bool may_turn = false;  ///< he does not come, but might
-  bool leaves = false;    ///< that he may turn limits it, but the twist leads away from him
-  double meets_s = 0.0;   ///< when, if all went on so; might: if he turned now
-  double room_m = 0.0;    ///< between him and the body, with what it pulls
-  Vec2 at{};              ///< where he is now, in B: the middle of what was seen of him
+  double part = 1.0;         ///< of the commanded twist, 0..1
+  bool found = false;        ///< somebody would be met
+  bool may_turn = false;     ///< he does not come, but might
+  double unless_left = 1.0;  ///< the part, but for those whom the twist leads away from
+  double meets_s = 0.0;      ///< when, if all went on so; might: if he turned now
+  double room_m = 0.0;       ///< between him and the body, with what it pulls
+  Vec2 at{};                 ///< where he is now, in B: the middle of what was seen of him
   double radius_m = 0.0;
   std::uint8_t sensor = 0;
   double age_s = 0.0;

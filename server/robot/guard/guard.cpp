@@ -269,7 +269,7 @@ void Guard::look_ahead_of_time(Looked& v, const BodyTwist& twist, bool by_itself
   nav::sense::Foreseen f = nav::sense::foresee(around_->movers, odometry_, body_, twist, params,
                                                whole_ ? &*whole_ : nullptr);
   // A person who drives may always creep away: also from who walks beside it, often himself.
-  if (f.leaves && !by_itself) f.part = std::max(f.part, creeps_part(twist, params));
+  if (!by_itself) f.part = std::max(f.part, std::min(f.unless_left, creeps_part(twist, params)));
   if (f.part < v.part) {
     v = {};
     v.part = f.part;

@@ -234,9 +234,24 @@ TEST(Foresee, WhoComesAnyhowIsNotSaidToTurn) {
   EXPECT_EQ(f.meets_s, comes.meets_s);
 }
 
-TEST(Foresee, WhomItLeavesIsToldSo) {
-  EXPECT_TRUE(look_at({-0.8, 1.0}, {1.2, 0.0}, {1.0, 0.0}).leaves);
-  EXPECT_FALSE(look_at({0.9, 1.0}, {0.0, 1.5}, {1.0, 0.0}).leaves);
+TEST(Foresee, WhomItLeavesIsToldApart) {
+  const Vec2 left{-0.8, 1.0};
+  const Vec2 v{1.2, 0.0};
+  const Foreseen leaves = look_at(left, v, {1.0, 0.0});
+  EXPECT_EQ(leaves.part, 0.0);
+  EXPECT_EQ(leaves.unless_left, 1.0);
+  const Foreseen nears = look_at({0.9, 1.0}, {0.0, 1.5}, {1.0, 0.0});
+  EXPECT_LT(nears.part, 1.0);
+  EXPECT_EQ(nears.unless_left, nears.part);
+  // With somebody ahead as well who comes, or might: those count on.
+  const Odometry now{at(0.0), {}, 1.0, 0.0, {}};
+  for (const Mover& ahead : {walker({1.2, -1.0}, {0.0, 0.7}), walker({1.6, -1.6}, {-1.0, 0.0})}) {
+    const double alone = foresee(std::vector{ahead}, now, kBody, {1.0, 0.0}, {}).part;
+    ASSERT_LT(alone, 1.0);
+    const Foreseen both = foresee(std::vector{walker(left, v), ahead}, now, kBody, {1.0, 0.0}, {});
+    EXPECT_EQ(both.part, 0.0);
+    EXPECT_EQ(both.unless_left, alone);
+  }
 }
 
 TEST(Foresee, WhoWalksAlongBesideItSlowsItAndDoesNotStopIt) {
