@@ -19,8 +19,9 @@ constexpr double kFarthest_s = 10.0;   // nobody goes straight on for longer; bo
 constexpr double kMostUnsure_m = 0.4;  // what is known of him, is known better than this
 constexpr double kComesNearer_m = 0.01;
 constexpr std::size_t kMostOf = 16;
-constexpr double kTold_s = 0.35;    // from a turn of his until it is told
-constexpr double kFollows_m = 0.3;  // beside the body's width: who walks up so, comes from behind
+constexpr double kTold_s = 0.35;     // from a turn of his until it is told
+constexpr double kFollows_m = 0.3;   // beside the body's width: who walks up so, comes from behind
+constexpr double kTurnsAbout = 0.2;  // corners so fast, as part of the way, and it turns
 constexpr double kTurns_rad = base::rad_from_deg(100.0);  // by more nobody turns while he walks
 
 /// Of the moment, in B as it is now.
@@ -198,10 +199,13 @@ Foreseen foresee(std::span<const Mover> movers, const Odometry& now, const Footp
     if (may(part)) break;
   }
   out.unless_left = out.part;
+  const bool turns = w * all.reach_m() > kTurnsAbout * v;
   for (std::size_t i = 0; i < n && params.turn_part > 0.0; ++i) {
     const double his_mps = params.turn_part * nears_if_he_turns_mps(who[i], all);
     const double its_mps = nears_mps(who[i], all, twist);
-    const double part = part_if_he_turns(who[i], his_mps, its_mps, brake_s, params);
+    // In a turn the side that leaves him now is followed by one that does not.
+    const double counts_mps = turns ? std::max(0.0, its_mps) : its_mps;
+    const double part = part_if_he_turns(who[i], his_mps, counts_mps, brake_s, params);
     if (his_mps <= 0.0) continue;
     if (its_mps >= 0.0) out.unless_left = std::min(out.unless_left, part);
     if (part >= out.part) continue;

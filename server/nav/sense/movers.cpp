@@ -134,7 +134,10 @@ void Movers::part() {
           Place& p = place(x, y);
           if (p.piece != piece_ || p.thing != 0) continue;
           p.thing = number;
-          open_.push_back({x, y});
+          // What is held back belongs to whom it lies beside, and joins nobody to anything.
+          if (static_cast<double>(p.last_s) == static_cast<double>(static_cast<float>(now_s_))) {
+            open_.push_back({x, y});
+          }
         }
       }
     }

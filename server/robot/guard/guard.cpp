@@ -55,8 +55,10 @@ BodyTwist probe_of(const BodyTwist& wanted) noexcept {
 
 /// Of the twist, at a hand's creep speed.
 double creeps_part(const BodyTwist& twist, const nav::sense::ProtectParams& params) noexcept {
-  const double by_way = params.creep_mps / std::max(std::abs(twist.linear_mps), 1e-6);
-  const double by_turn = params.creep_turn_radps / std::max(std::abs(twist.angular_radps), 1e-6);
+  const double v = std::abs(twist.linear_mps);
+  const double w = std::abs(twist.angular_radps);
+  const double by_way = v > 1e-6 ? params.creep_mps / v : 1.0;
+  const double by_turn = w > 1e-6 ? params.creep_turn_radps / w : 1.0;
   return std::min({1.0, by_way, by_turn});
 }
 

@@ -209,6 +209,8 @@ TEST(Foresee, ATurnOnTheSpotIsBrakedAsTurnsAre) {
   // 0.8 rad/s at 0.42 rad/s²: 1.9 s. The sides that swing come nearer by some of it.
   EXPECT_LT(f.part, (1.27 / 1.5 - 0.55) * 0.42 / 0.8 + 1e-6);
   EXPECT_GT(f.part, 0.0);
+  // A corner leaves him now; before it stands the next one comes round.
+  EXPECT_LT(look_at({0.57, -2.1}, {0.0, 0.8}, {0.0, 1.2}).part, 0.9);
 }
 
 TEST(Foresee, BesideWhatItPullsHeIsAsNear) {
