@@ -14,16 +14,17 @@
 // Who walks up from behind is his own business: to stand would help nobody.
 //
 // And he may turn. Whoever is not straight behind it may turn towards it at any moment by up to
-// 100 degrees, and is told kTold_s later: so it drives no faster than it stands by then (the
-// separation that ISO 13855 asks for, with his own speed),
+// 100 degrees, and is told kTold_s (0.35 s) later: so it drives no faster than it stands by then
+// (the separation that ISO 13855 asks for, with his own speed),
 //
 //   v_his (kTold_s + delay_s + λ brakes) + v_its λ (kTold_s + delay_s + λ brakes / 2)
 //       <= room - side_m
 //
 // v_his: turn_part |v| cos(what is left of the angle to the body after 100 degrees), v_its: how
-// fast the twist brings the body nearer to where he is, negative where it leaves him. Smooth in
-// where he is and how he goes, so beside whoever walks along it does not speed up and brake by
-// turns.
+// fast the twist brings the body nearer to where he is, in m/s; negative where it leaves him, but 0
+// then in a turn, whose next side comes round. Smooth in where he is beside it and how he goes, so
+// beside whoever walks along it does not speed up and brake by turns; a step only where he comes
+// to be straight behind.
 //
 // Of more than 16 the nearest count. Pure; allocates nothing: for the control tick. Without movers
 // nothing is reckoned; with one whom the body may meet up to 12 · 40 looks, more where it brakes

@@ -105,8 +105,10 @@ void Movers::gather(const Reduced& in, const Grid& before) {
       const bool anew = now_s_ - static_cast<double>(p.last_s) > kGap_s;
       if (anew) p.was_free = before.at(at.x, at.y, in.stamp) == Known::Free;
       p.piece = piece_;
-      p.thing = still_about(cell.x, cell.y) ? -1 : 0;
-      if (kind == Kind::Passing) continue;  // never a thing by itself, nor still
+      if (kind == Kind::Passing) {  // never a thing by itself, nor still
+        p.thing = still_about(cell.x, cell.y) ? -1 : 0;
+        continue;
+      }
       if (anew) p.first_s = static_cast<float>(now_s_);
       p.last_s = static_cast<float>(now_s_);
       p.thing = -1;
@@ -135,9 +137,7 @@ void Movers::part() {
           if (p.piece != piece_ || p.thing != 0) continue;
           p.thing = number;
           // What is held back belongs to whom it lies beside, and joins nobody to anything.
-          if (static_cast<double>(p.last_s) == static_cast<double>(static_cast<float>(now_s_))) {
-            open_.push_back({x, y});
-          }
+          if (p.last_s == static_cast<float>(now_s_)) open_.push_back({x, y});
         }
       }
     }

@@ -210,7 +210,8 @@ TEST(Foresee, ATurnOnTheSpotIsBrakedAsTurnsAre) {
   EXPECT_LT(f.part, (1.27 / 1.5 - 0.55) * 0.42 / 0.8 + 1e-6);
   EXPECT_GT(f.part, 0.0);
   // A corner leaves him now; before it stands the next one comes round.
-  EXPECT_LT(look_at({0.57, -2.1}, {0.0, 0.8}, {0.0, 1.2}).part, 0.45);
+  // 1.45 m from edge to edge: 0.8 (0.55 + λ 1.2 / 0.42) = 1.45 - 0.08
+  EXPECT_NEAR(look_at({0.57, -2.1}, {0.8, 0.0}, {0.0, 1.2}).part, 0.41, 0.02);
 }
 
 TEST(Foresee, BesideWhatItPullsHeIsAsNear) {
