@@ -146,17 +146,19 @@ void Movers::part() {
   for (auto& some : spread_) some.clear();
   // What is held back at edges would bend his way; of who walks in dust it is the most of him.
   const bool weather = points_.size() - believed_ >= kWeather;
-  balance_.assign(things_.size(), 0);
+  parts_.assign(things_.size(), {});
   const auto thing_of = [this](std::size_t i) { return place(of_[i].x, of_[i].y).thing; };
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const std::int32_t number = thing_of(i);
-    if (number > 0) balance_[static_cast<std::size_t>(number - 1)] += i < believed_ ? 1 : -1;
+    if (number <= 0) continue;
+    Parts& of = parts_[static_cast<std::size_t>(number - 1)];
+    ++(i < believed_ ? of.believed : of.held_back);
   }
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const std::int32_t number = thing_of(i);
     if (number <= 0) continue;
     const auto thing = static_cast<std::size_t>(number - 1);
-    if (i >= believed_ && (!weather || balance_[thing] > 0)) continue;
+    if (i >= believed_ && (!weather || !parts_[thing].half_hidden())) continue;
     Box& b = things_[thing];
     const Vec2 p = points_[i];
     b = {std::min(b.x0, p.x), std::max(b.x1, p.x), std::min(b.y0, p.y), std::max(b.y1, p.y),

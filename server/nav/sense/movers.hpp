@@ -46,10 +46,11 @@ struct Mover {
 
 class Movers {
  public:
-  static constexpr double kLeast_mps = 0.3;  ///< slower, it stands
-  static constexpr double kStill_s = 1.5;    ///< a place that is taken for so long
-  static constexpr double kLost_s = 0.5;     ///< not seen for so long, he is forgotten
-  static constexpr std::size_t kMost = 8;    ///< told at most, the nearest to the body
+  static constexpr double kLeast_mps = 0.3;        ///< slower, it stands
+  static constexpr double kStill_s = 1.5;          ///< a place that is taken for so long
+  static constexpr double kLost_s = 0.5;           ///< not seen for so long, he is forgotten
+  static constexpr std::uint32_t kMostHidden = 3;  ///< times what is believed of him
+  static constexpr std::size_t kMost = 8;          ///< told at most, the nearest to the body
 
   /// @param range_m what is farther from the body is not followed
   /// @param planar one plane looks: who comes towards it is told, too
@@ -80,6 +81,14 @@ class Movers {
     std::uint32_t points = 0;
     bool leaves_out(Vec2 p) const noexcept;
     Vec2 mid() const noexcept { return {0.5 * (x0 + x1), 0.5 * (y0 + y1)}; }
+  };
+  struct Parts {
+    std::uint32_t believed = 0;
+    std::uint32_t held_back = 0;
+    /// Most of it is held back, but not so much that it is hardly more than that: a plume.
+    bool half_hidden() const noexcept {
+      return held_back >= believed && held_back <= kMostHidden * believed;
+    }
   };
   struct Sample {
     double at_s = 0.0;
@@ -128,7 +137,7 @@ class Movers {
   std::vector<Vec2> points_;  ///< voxels of this piece, in O
   std::vector<Cell> of_;      ///< the cell of each
   std::size_t believed_ = 0;  ///< of them, the first; the others are held back
-  std::vector<int> balance_;  ///< of each thing: points believed less those held back
+  std::vector<Parts> parts_;  ///< of each thing
   std::vector<Box> things_;
   std::vector<std::vector<Vec2>> spread_;  ///< some points of each thing
   std::vector<Cell> open_;

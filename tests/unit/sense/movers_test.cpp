@@ -15,14 +15,29 @@ namespace {
 
 using Blocks = std::function<std::vector<Block>(double)>;
 using Body = std::function<Pose2(double)>;
+/// Of each metre of a ray's way there, the share that ends in a grain. @param p in O
+using Dust = std::function<double(Vec2 p, double since)>;
+
+/// How far from the sensor a ray meets a grain; farther than upto_m: none before that.
+double grain_m(const Dust& dust, const Pose2& eye, Vec2 ray, double upto_m, double since,
+               std::mt19937& random) {
+  constexpr double kStep_m = 0.05;
+  if (!dust) return 1e9;
+  std::uniform_real_distribution<double> of(0.0, 1.0);
+  for (double r = 0.3; r < upto_m; r += kStep_m) {
+    const double on_m = r + kStep_m * of(random);
+    const Pose2 there = eye * Pose2{on_m * ray.x, on_m * ray.y, 0.0};
+    if (of(random) < kStep_m * dust({there.x_m, there.y_m}, since)) return on_m;
+  }
+  return 1e9;
+}
 
 /// A scanner at 25 Hz before the body, for so long. @param late_s between its first piece and the
-/// others @param clear_s for so long rays that meet nothing see the way free @param dust_per_m of
-/// each ray's way, the share that ends in a grain
+/// others @param clear_s for so long rays that meet nothing see the way free
 /// @return who moves at the end of each piece
 std::vector<std::vector<Mover>> watch(double lasts_s, const Body& body, const Blocks& blocks,
                                       double late_s = 0.0, double clear_s = 1e9,
-                                      double dust_per_m = 0.0) {
+                                      const Dust& dust = {}) {
   SensorSetup eye;
   eye.name = "eye";
   eye.mount = {.x_m = 0.45, .z_m = 0.3};
@@ -32,12 +47,12 @@ std::vector<std::vector<Mover>> watch(double lasts_s, const Body& body, const Bl
   EXPECT_TRUE(chain.has_value());
   std::mt19937 random(3);
   std::normal_distribution<double> noise(0.0, 0.01);
-  std::exponential_distribution<double> ways(1.0);
   std::vector<std::vector<Mover>> out;
   const Rays rays = planar();
   for (double since = 0.0; since < lasts_s; since += 0.04) {
     const double by_s = since > 0.0 ? 1.0 + late_s : 1.0;
     const double t = since + by_s;
+    const Pose2 from = body(since) * Pose2{eye.mount.x_m, 0.0, 0.0};
     Scene scene;
     scene.blocks = blocks(since);
     scene.ground = [](double, double) { return -5.0; };
@@ -47,9 +62,10 @@ std::vector<std::vector<Mover>> watch(double lasts_s, const Body& body, const Bl
     for (base::SightPoint& p : sight.points) {
       const double r = std::hypot(double(p.x_m), double(p.y_m));
       const bool hit = p.echo == base::Echo::Hit;
-      const double grain_m = dust_per_m > 0.0 ? ways(random) / dust_per_m : 1e9;
-      const bool dusty = grain_m < (hit ? r : 6.0);
-      const double k = dusty ? grain_m / r : hit ? 1.0 + noise(random) / r : 6.0 / r;
+      const double grain =
+          grain_m(dust, from, {p.x_m / r, p.y_m / r}, hit ? r : 6.0, since, random);
+      const bool dusty = grain < 1e9;
+      const double k = dusty ? grain / r : hit ? 1.0 + noise(random) / r : 6.0 / r;
       if (dusty) p.echo = base::Echo::Hit;
       if (p.echo != base::Echo::Hit) {
         p.echo = since < clear_s ? base::Echo::Clear : base::Echo::Unknown;
@@ -69,6 +85,9 @@ Block person(double x, double y) {
 }
 Pose2 stands(double) {
   return {};
+}
+Dust everywhere(double per_m) {
+  return [=](Vec2, double) { return per_m; };
 }
 Pose2 drives(double t) {
   return {t, 0.0, 0.0};
@@ -132,7 +151,7 @@ TEST(Movers, WhoComesThroughDustIsToldBeforeHeIsThere) {
             return Pose2{0.5 * t, 0.0, 0.0};
           },
           [&](double t) { return std::vector{person(1.9, side * (5.2 - 1.7 * t))}; }, 0.0, 1e9,
-          dust_per_m);
+          everywhere(dust_per_m));
       const auto comes = [&](const std::vector<Mover>& told) {
         return std::ranges::any_of(told, [&](const Mover& m) { return -side * m.v_mps.y > 1.0; });
       };
@@ -149,9 +168,27 @@ TEST(Movers, DustAboutWhatStandsIsNobody) {
                               {5.0, 5.8, -2.0, -1.9, -1.0, 1.0}};
   };
   std::size_t told = 0;
-  for (const auto& one : watch(8.0, stands, yard, 0.0, 1e9, 0.04)) told += one.size();
-  for (const auto& one : watch(5.0, drives, yard, 0.0, 1e9, 0.04)) told += one.size();
+  for (const auto& one : watch(8.0, stands, yard, 0.0, 1e9, everywhere(0.04))) told += one.size();
+  for (const auto& one : watch(5.0, drives, yard, 0.0, 1e9, everywhere(0.04))) told += one.size();
   EXPECT_EQ(told, 0U);
+}
+
+//   What the wind takes along is no wider than somebody, and goes as fast. A thing it is all the
+//   same to who stops before it; but nobody's way, whom to let by.
+TEST(Movers, APlumeOfDustThatDriftsIsNobody) {
+  for (const double fast_mps : {0.5, 1.0}) {
+    for (const double per_m : {0.3, 1.0}) {
+      const auto in_plume = [&](Vec2 p, double since) {
+        return std::hypot(p.x - 3.0, p.y + 2.5 - fast_mps * since) < 0.5 ? per_m : 0.01;
+      };
+      std::size_t told = 0;
+      for (const auto& one : watch(
+               4.0, stands, [](double) { return std::vector<Block>{}; }, 0.0, 1e9, in_plume)) {
+        told += one.empty() ? 0 : 1;
+      }
+      EXPECT_EQ(told, 0U) << fast_mps << " m/s, " << per_m << " per metre";
+    }
+  }
 }
 
 TEST(Movers, HeIsToldFromARobotThatDrives) {
