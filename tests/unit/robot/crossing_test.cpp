@@ -54,10 +54,11 @@ std::optional<double> met(nav::sense::Vec2 from, double cosine, double sine,
 /// One drive straight ahead, 12 s, and somebody on his way.
 class Crossing {
  public:
-  Crossing(const Person& person, double speed_mps, double foresee_s)
+  Crossing(const Person& person, double speed_mps, double foresee_s, double turn_part = 1.0)
       : person_(person), speed_mps_(speed_mps), lookout_(eyes()) {
     nav::sense::ProtectParams params;
     params.foresee_s = foresee_s;
+    params.turn_part = turn_part;
     guard_.set(params, {}, false);
   }
 
@@ -172,12 +173,23 @@ TEST(Crossing, WhoeverCrossesIsNotRunIntoAndWithoutForesightHeIs) {
 }
 
 TEST(Crossing, WhoWalksBesideOrAwayHoldsNobody) {
-  for (const Person& p : {Person{3.0, 1.6, 0.8, 0.0}, Person{4.0, 2.5, 0.0, 1.0},
-                          Person{9.0, -3.0, -1.0, -0.3}, Person{3.0, 0.0, 1.6, 0.0}}) {
+  for (const Person& p :
+       {Person{4.0, 2.5, 0.0, 1.0}, Person{9.0, -3.0, -1.0, -0.3}, Person{3.0, 0.0, 1.6, 0.0}}) {
     const auto told = Crossing(p, 1.0, 3.0).drive();
     EXPECT_FALSE(told.stopped) << p.x_m << " " << p.y_m;
     EXPECT_GT(told.way_m, 10.5) << p.x_m << " " << p.y_m;
   }
+}
+
+//   He is overtaken, 1.1 m beside the body, and may turn: it goes by him, slower.
+TEST(Crossing, WhoIsOvertakenCloselySlowsAndHoldsNobody) {
+  const Person beside{3.0, 1.6, 0.8, 0.0};
+  const auto told = Crossing(beside, 1.0, 3.0).drive();
+  EXPECT_FALSE(told.stopped);
+  EXPECT_GT(told.way_m, 10.0);
+  const auto trusts = Crossing(beside, 1.0, 3.0, 0.0).drive();
+  EXPECT_GT(trusts.way_m, told.way_m + 0.3) << "nobody turns";
+  EXPECT_GT(trusts.way_m, 10.5);
 }
 
 }  // namespace
