@@ -57,6 +57,14 @@ Footprint Footprint::box(double length_m, double width_m, double back_m) noexcep
   return f;
 }
 
+Footprint Footprint::turned(double rad) const noexcept {
+  const double c = std::cos(rad);
+  const double s = std::sin(rad);
+  Footprint out = *this;
+  for (Vec2& p : out.corners_) p = {c * p.x - s * p.y, s * p.x + c * p.y};
+  return out;
+}
+
 void Footprint::finish() noexcept {
   for (const Vec2 c : corners()) reach_m_ = std::max(reach_m_, std::hypot(c.x, c.y));
 }

@@ -41,6 +41,9 @@ class Footprint {
   /// whose origin is its rear axle). All positive.
   static Footprint box(double length_m, double width_m, double back_m) noexcept;
 
+  /// Turned about the origin, to the left.
+  Footprint turned(double rad) const noexcept;
+
   std::span<const Vec2> corners() const noexcept { return {corners_.data(), size_}; }
   /// Metres to the polygon, negative inside (then to the nearest edge).
   double distance_m(Vec2 p) const noexcept;

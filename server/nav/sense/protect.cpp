@@ -29,7 +29,7 @@ Drive drive_of(const Footprint& body, const base::BodyTwist& twist, const Protec
   d.twist = twist;
   const double v = std::abs(twist.linear_mps);
   const double w = std::abs(twist.angular_radps);
-  d.turning = v < kStill_mps || v < 0.2 * w * body.reach_m();
+  d.turning = turns_on_the_spot(twist, body);
   d.straight = w < 1e-5;
   // As far as it takes to stop with the margin, and no farther: beyond nothing limits.
   const double brake_s = std::max(0.5 * v / p.decel_mps2, 0.5 * w / p.turn_decel_radps2);
@@ -189,6 +189,11 @@ void tell(Verdict& v, const Nearest& n, const Drive& d) noexcept {
 
 }  // namespace
 
+bool turns_on_the_spot(const base::BodyTwist& twist, const Footprint& body) noexcept {
+  const double v = std::abs(twist.linear_mps);
+  return v < kStill_mps || v < 0.2 * std::abs(twist.angular_radps) * body.reach_m();
+}
+
 bool is_spared(const Spared* spared, Vec2 p, Known known) noexcept {
   if (spared == nullptr || known == Known::Drop) return false;
   const Vec2 e = spared->to - spared->from;
@@ -248,10 +253,13 @@ Verdict protect(const Patch& patch, const Pose2& pose, const Footprint& body,
       verdict.limit = taken.cell.known == Known::Drop ? Limit::Drop : Limit::Obstacle;
     }
   }
-  const Nearest unseen = nearest_unseen(seen, pose, body, d, spared, dock);
+  const double creeps = creep_part(d, params);
+  Nearest unseen;
+  if (creeps < 1.0 || spared != nullptr) {
+    unseen = nearest_unseen(seen, pose, body, d, spared, dock);
+  }
   if (unseen.touch_s) {
-    const double part =
-        std::max(part_for(*unseen.touch_s, twist, params), std::min(1.0, creep_part(d, params)));
+    const double part = std::max(part_for(*unseen.touch_s, twist, params), std::min(1.0, creeps));
     if (part < verdict.part) {
       verdict.part = part;
       verdict.limit = Limit::Unseen;

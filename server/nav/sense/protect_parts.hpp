@@ -1,6 +1,7 @@
 #pragma once
 // What the two halves of protect() share: the taken, cell by cell, and the unseen, by looks along
-// the outline. For protect.cpp and unseen.cpp alone.
+// the outline. For protect.cpp, unseen.cpp and
+// skid.cpp alone.
 
 #include <optional>
 
@@ -38,6 +39,9 @@ inline void nearer(Nearest& best, double t, Vec2 at, const Patch::Cell& cell) no
   if (best.touch_s && t >= *best.touch_s) return;
   best = {t, at, cell};
 }
+
+/// Or nearly: its corners go about it more than five times as fast as it goes.
+bool turns_on_the_spot(const base::BodyTwist& twist, const Footprint& body) noexcept;
 
 /// It is where the robot wants to be. @param spared null: nothing is
 bool is_spared(const Spared* spared, Vec2 p, Known known) noexcept;

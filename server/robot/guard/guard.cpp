@@ -193,6 +193,7 @@ const nav::sense::Odometry& Guard::move(const BodyTwist& measured, base::Time no
   odometry_.v_mps = t.linear_mps;
   odometry_.left_mps = aside_mps;
   odometry_.yaw_rate_radps = t.angular_radps;
+  lately_.move(odometry_, dt_s);
   return odometry_;
 }
 
@@ -226,6 +227,7 @@ Guard::Looked Guard::look(const BodyTwist& twist, bool by_itself, base::Time now
     }
     v = {protect(around_->patch, odometry_.pose, body_, twist, params,
                  spared_ ? &*spared_ : nullptr, &around_->marks)};
+    look_where_it_skids(v, twist, params);
     look_behind(v, twist, params);
     if (ahead) look_along_rays(v, twist, params);
     look_ahead_of_time(v, twist, by_itself, params);
@@ -296,6 +298,16 @@ void Guard::look_ahead_of_time(Looked& v, const BodyTwist& twist, bool by_itself
     const nav::sense::Vec2 his = m.at + age_s * m.v_mps;
     if (std::hypot(his.x - at.x_m, his.y - at.y_m) < m.radius_m + kHis_m) v.moves = true;
   }
+}
+
+/// A dock is come to so slowly that it does not skid.
+void Guard::look_where_it_skids(Looked& v, const BodyTwist& twist,
+                                const nav::sense::ProtectParams& params) const noexcept {
+  if (spared_) return;
+  const nav::sense::Verdict skids = protect_skidding(around_->patch, odometry_.pose, body_, twist,
+                                                     lately_, !swings_m_, params, &around_->marks);
+  const bool tells = v.limit == Limit::None && skids.limit != Limit::None;
+  if (skids.part < v.part || tells) v = {skids};
 }
 
 /// What is pulled cuts corners, and swings out.

@@ -30,6 +30,7 @@
 #include "nav/sense/odometry.hpp"
 #include "nav/sense/params.hpp"
 #include "nav/sense/protect.hpp"
+#include "nav/sense/skid.hpp"
 #include "nav/sense/trailer.hpp"
 #include "nav/track/params.hpp"
 #include "robot/guard/blocked.hpp"
@@ -132,6 +133,8 @@ class Guard {
                        const nav::sense::ProtectParams& params) const noexcept;
   void look_ahead_of_time(Looked& v, const base::BodyTwist& twist, bool by_itself,
                           const nav::sense::ProtectParams& params) const noexcept;
+  void look_where_it_skids(Looked& v, const base::BodyTwist& twist,
+                           const nav::sense::ProtectParams& params) const noexcept;
   void look_behind(Looked& v, const base::BodyTwist& twist,
                    const nav::sense::ProtectParams& params) const noexcept;
   void tell(const Looked& v, base::GuardAction action, base::Time now);
@@ -145,7 +148,7 @@ class Guard {
   nav::sense::ProtectParams params_;
   nav::sense::RaysParams rays_;
   double decel_set_mps2_ = 0.6;
-  std::optional<double> swings_m_;  ///< ahead of its front: turning on the spot; empty: it does not
+  std::optional<double> swings_m_;  ///< ahead of its front: turning on the spot; empty: it steers
   nav::sense::Footprint body_ = footprint_of({});
   std::optional<nav::sense::Trailer> trailer_;
   nav::sense::Coupling coupling_;
@@ -153,6 +156,7 @@ class Guard {
   std::optional<nav::sense::Spared> spared_;
   std::shared_ptr<const Surroundings> around_;
   nav::sense::Odometry odometry_;
+  nav::sense::Lately lately_;  ///< how it moves by that
   bool began_ = false;
   base::BodyTwist wanted_;
   double limit_mps_ = 1e9;
