@@ -62,6 +62,14 @@ double creeps_part(const BodyTwist& twist, const nav::sense::ProtectParams& para
   return std::min({1.0, by_way, by_turn});
 }
 
+/// Within 45 degrees, of how the body goes and how its corners turn about it.
+bool same_way(const BodyTwist& a, const BodyTwist& b, double reach_m) noexcept {
+  const double aw = a.angular_radps * reach_m;
+  const double bw = b.angular_radps * reach_m;
+  const double both = std::hypot(a.linear_mps, aw) * std::hypot(b.linear_mps, bw);
+  return a.linear_mps * b.linear_mps + aw * bw > std::sqrt(0.5) * both;
+}
+
 bool too_slow(const BodyTwist& t) noexcept {
   return std::abs(t.linear_mps) < kLeast_mps && std::abs(t.angular_radps) < kLeast_radps;
 }
@@ -378,6 +386,7 @@ BodyTwist Guard::judge(const BodyTwist& wanted, bool by_itself, base::Time now) 
   BodyTwist out = times(wanted, v.part);
   if (v.limit != Limit::None && too_slow(out)) {
     out = {};
+    held_ = wanted;
     clear_since_.reset();
     if (!stopped_since_) {
       stopped_since_ = now;
@@ -387,9 +396,14 @@ BodyTwist Guard::judge(const BodyTwist& wanted, bool by_itself, base::Time now) 
     tell(v, base::GuardAction::Stop, now);
     return out;
   }
-  // A hand that draws back is let go at once; a drive by itself waits (may_go_on).
   if (stopped_since_ && !by_itself) {
+    // A hand that draws back is let go at once; one that still wants the same waits as a drive by
+    // itself does (may_go_on): who stepped out of the way may step back.
+    if (!clear_since_) clear_since_ = now;
+    const bool waits = base::seconds(now - *clear_since_) < blocked_.params().clear_s;
+    if (waits && same_way(wanted, held_, body_.reach_m())) return {};
     stopped_since_.reset();
+    clear_since_.reset();
     news_ = false;
   }
   if (v.limit == Limit::None) {

@@ -159,6 +159,7 @@ class Guard {
   nav::sense::Lately lately_;  ///< how it moves by that
   bool began_ = false;
   base::BodyTwist wanted_;
+  base::BodyTwist held_;  ///< what was wanted when it was stopped last
   double limit_mps_ = 1e9;
   std::optional<base::Time> stopped_since_;
   std::optional<base::Time> clear_since_;

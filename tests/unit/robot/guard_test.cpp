@@ -88,6 +88,47 @@ TEST_F(Seeing, WhoCrossesIsWaitedForAndTheMissionGoesOn) {
   EXPECT_GT(pose.x_m, him.at.x + 1.0) << "it went on";
 }
 
+TEST_F(Seeing, WhoStepsOutOfAHandsWayMayStepBack) {
+  field.run(8.0);
+  ASSERT_TRUE(field.ask(Arm{}));
+  ASSERT_TRUE(field.ask(SetMode{Mode::Manual}));
+  field.let_go();
+  const auto hold = [&](double v, double w, double seconds) {
+    for (int i = 0; i < seconds * 50.0; ++i) {
+      field.robot.request(Drive{{v, w}, true}, field.now + std::chrono::seconds(1), {});
+      field.tick();
+    }
+  };
+  // Given a hand that holds on before something,
+  wall_at(driven_m() + 1.2);
+  hold(0.5, 0.0, 6.0);
+  ASSERT_FALSE(field.moves());
+  // when that leaves for a moment,
+  wall_m.reset();
+  hold(0.5, 0.02, 0.7);
+  EXPECT_FALSE(field.moves());
+  EXPECT_EQ(field.state()->obstacle->action, base::GuardAction::Stop);
+  wall_at(driven_m() + 0.5 * VehicleLength + 0.2);
+  hold(0.5, 0.0, 0.5);
+  EXPECT_FALSE(field.moves());
+  // then it is waited for anew; and when it has been gone for a second, the hand drives on.
+  wall_m.reset();
+  hold(0.5, 0.0, 0.9);
+  EXPECT_FALSE(field.moves());
+  hold(0.5, 0.0, 0.6);
+  EXPECT_TRUE(field.moves());
+  // One that draws back, or turns away, does not wait.
+  for (const auto& [v, w] : {std::pair{-0.4, 0.0}, std::pair{0.0, 0.6}}) {
+    wall_at(driven_m() + 1.2);
+    hold(0.5, 0.0, 6.0);
+    ASSERT_FALSE(field.moves());
+    hold(v, w, 0.3);
+    EXPECT_TRUE(field.moves()) << v << " " << w;
+    hold(-0.4, 0.0, 1.0);
+    hold(0.0, -0.6, w > 0.0 ? 0.3 : 0.0);
+  }
+}
+
 TEST_F(Seeing, BesideWhoeverMightTurnItStandsAndAHandMayCreepAway) {
   field.run(8.0);
   ASSERT_TRUE(field.ask(Arm{}));
