@@ -37,8 +37,7 @@ struct BlockedParams {
 template <class V>
 void fields(V& v, BlockedParams& p) {
   v("clear_s", p.clear_s, 0.2, 60.0,
-    base::higher_is_stricter(
-        "what drives by itself goes on when its way has been clear for so long"));
+    base::higher_is_stricter("what stands goes on when its way has been clear for so long"));
   v("after_s", p.after_s, 0.5, 3600.0, "what drives by itself and is stopped so long is blocked");
   v("then", p.then,
     "wait: until the way is clear; around: the same, and a way around is looked for; return: home, "
