@@ -1,7 +1,6 @@
 #pragma once
 // What the two halves of protect() share: the taken, cell by cell, and the unseen, by looks along
-// the outline. For protect.cpp, unseen.cpp and
-// skid.cpp alone.
+// the outline. For protect.cpp, unseen.cpp and skid.cpp alone.
 
 #include <optional>
 
@@ -40,7 +39,7 @@ inline void nearer(Nearest& best, double t, Vec2 at, const Patch::Cell& cell) no
   best = {t, at, cell};
 }
 
-/// Or nearly: its corners go about it more than five times as fast as it goes.
+/// Or nearly so: its corners go about it more than five times as fast as it goes.
 bool turns_on_the_spot(const base::BodyTwist& twist, const Footprint& body) noexcept;
 
 /// It is where the robot wants to be. @param spared null: nothing is

@@ -30,9 +30,8 @@ Verdict along_way(const Patch& patch, const Pose2& pose, const Footprint& body, 
   if (way.aside_rad == 0.0) return protect(patch, pose, body, twist, params, nullptr, marks);
   Verdict there = protect(patch, pose * Pose2{0.0, 0.0, way.aside_rad}, body.turned(-way.aside_rad),
                           twist, params, nullptr, marks);
-  const double c = std::cos(way.aside_rad);
-  const double s = std::sin(way.aside_rad);
-  there.at = {c * there.at.x - s * there.at.y, s * there.at.x + c * there.at.y};
+  const Pose2 at = Pose2{0.0, 0.0, way.aside_rad} * Pose2{there.at.x, there.at.y, 0.0};
+  there.at = {at.x_m, at.y_m};
   there.bearing_rad = std::atan2(there.at.y, there.at.x);
   return there;
 }
