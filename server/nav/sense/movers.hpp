@@ -46,11 +46,10 @@ struct Mover {
 
 class Movers {
  public:
-  static constexpr double kLeast_mps = 0.3;        ///< slower, it stands
-  static constexpr double kStill_s = 1.5;          ///< a place that is taken for so long
-  static constexpr double kLost_s = 0.5;           ///< not seen for so long, he is forgotten
-  static constexpr std::uint32_t kMostHidden = 3;  ///< times what is believed of him
-  static constexpr std::size_t kMost = 8;          ///< told at most, the nearest to the body
+  static constexpr double kLeast_mps = 0.3;  ///< slower, it stands
+  static constexpr double kStill_s = 1.5;    ///< a place that is taken for so long
+  static constexpr double kLost_s = 0.5;     ///< not seen for so long, he is forgotten
+  static constexpr std::size_t kMost = 8;    ///< told at most, the nearest to the body
 
   /// @param range_m what is farther from the body is not followed
   /// @param planar one plane looks: who comes towards it is told, too
@@ -65,6 +64,7 @@ class Movers {
   void forget() noexcept;
 
  private:
+  static constexpr std::uint32_t kMostHidden = 3;  ///< times what is believed of him
   struct Place {
     std::uint32_t piece = 0;  ///< that met it last
     std::int32_t thing = 0;   ///< of that piece; -1: still

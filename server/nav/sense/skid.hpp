@@ -29,7 +29,8 @@ class Lately {
  public:
   void move(const Odometry& now, double dt_s) noexcept;
   double v_mps() const noexcept { return v_mps_; }
-  double curve_pm() const noexcept { return yaw_rate_radps_ / v_mps_; }  ///< v_mps() is not 0
+  // Where v_mps() is not 0:
+  double curve_pm() const noexcept { return yaw_rate_radps_ / v_mps_; }  ///< rad in a metre's way
   double aside_rad() const noexcept;  ///< of its way from its axis, left positive; 0.35 at most
 
  private:
