@@ -1,9 +1,7 @@
 #include "nav/sense/movers.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdlib>
 
 #include "nav/sense/side_line.hpp"
 
@@ -11,23 +9,21 @@ namespace roverd::nav::sense {
 
 namespace {
 
-constexpr double kPlace_m = 0.1;
-constexpr std::int32_t kHangs = 2;  // cells so far apart are of one thing
-constexpr double kEdge_m = 0.3;     // so near to the end of the range a thing is cut off
-constexpr double kWidest_m = 1.6;
-constexpr std::size_t kWeather = 24;     // held back in one piece, by more than edges: dust, rain
-constexpr std::uint32_t kFewVoxels = 3;  // voxels of a thing
-constexpr std::size_t kThings = 64;
+constexpr std::uint32_t kFewVoxels = 3;    // voxels of a thing
+constexpr std::uint32_t kBody = 10;        // of somebody whose rows do not come and go
+constexpr double kAtTheEye = 0.5;          // the cosine: else it is seen what he leaves
+constexpr std::uint32_t kManyVoxels = 40;  // of what is plainly somebody
+constexpr double kSteady_mps = 0.2;        // that line's sigma
+constexpr double kSomebody_m = 0.9;        // wide
+constexpr double kGone_m = 0.25;           // as far
+constexpr std::size_t kTracks = 64;
 constexpr std::size_t kSpread = 4;
-constexpr double kGap_s = 0.5;  // of a place: not taken for so long, it begins anew
 constexpr double kWindow_s = 0.7;
 constexpr double kEvery_s = 0.035;
 constexpr double kSpan_s = 0.25;
 constexpr std::size_t kSamples = 4;  // at least
 constexpr double kGate_m = 0.35;
 constexpr double kGate_mps = 1.5;
-constexpr double kLeft_m = 0.12;      // so far outside of its box a place was left
-constexpr std::uint32_t kLately = 2;  // pieces: what was met in the last ones is taken
 constexpr double kNoMore_mps = 0.15;
 constexpr double kAgree_mps = 0.3;  // else one side is hidden, or comes into sight
 constexpr double kTakenOver_mps = 0.15;
@@ -38,156 +34,36 @@ constexpr double kAgain_m = 0.05;  // of the body that no beam met
 
 }  // namespace
 
-Movers::Movers(double range_m, bool planar) : range_m_(range_m), planar_(planar) {
-  const auto wide = static_cast<std::uint32_t>(std::ceil(2.0 * range_m / kPlace_m)) + 8;
-  const std::uint32_t side = std::bit_ceil(std::clamp(wide, 16U, 1024U));
-  mask_ = side - 1;
-  places_.resize(static_cast<std::size_t>(side) * side);
-}
-
-Movers::Cell Movers::cell_at(Vec2 p) noexcept {
-  return {static_cast<std::int32_t>(std::floor(p.x / kPlace_m)),
-          static_cast<std::int32_t>(std::floor(p.y / kPlace_m))};
-}
+Movers::Movers(double range_m, bool planar) : planar_(planar), things_(range_m, !planar) {}
 
 void Movers::forget() noexcept {
-  std::fill(places_.begin(), places_.end(), Place{});
+  things_.forget();
   tracks_.clear();
-  piece_ = 0;
   begun_ = false;
-}
-
-std::size_t Movers::index(std::int32_t x, std::int32_t y) const noexcept {
-  const auto column = static_cast<std::uint32_t>(x) & mask_;
-  const auto row = static_cast<std::uint32_t>(y) & mask_;
-  return static_cast<std::size_t>(row) * (mask_ + 1) + column;
-}
-
-bool Movers::met_lately(Vec2 p) const noexcept {
-  const Cell cell = cell_at(p);
-  return piece_ - places_[index(cell.x, cell.y)].piece < kLately;
-}
-
-/// There or beside it something has stood for long, and was met lately.
-bool Movers::still_about(std::int32_t x, std::int32_t y) noexcept {
-  for (std::int32_t v = y - 1; v <= y + 1; ++v) {
-    for (std::int32_t u = x - 1; u <= x + 1; ++u) {
-      const Place& p = place(u, v);
-      const auto last_s = static_cast<double>(p.last_s);
-      if (now_s_ - last_s < kGap_s && last_s - static_cast<double>(p.first_s) >= kStill_s) {
-        return true;
-      }
-    }
-  }
-  return false;
-}
-
-void Movers::gather(const Reduced& in, const Grid& before) {
-  cells_.clear();
-  points_.clear();
-  of_.clear();
-  const double c = std::cos(in.pose.yaw_rad);
-  const double s = std::sin(in.pose.yaw_rad);
-  const double far_m = range_m_ - kEdge_m;
-  for (const Kind kind : {Kind::Obstacle, Kind::Passing}) {
-    believed_ = kind == Kind::Obstacle ? 0 : points_.size();
-    for (const Voxel& v : in.voxels) {
-      if (v.kind != kind) continue;
-      const auto x = static_cast<double>(v.x_m);
-      const auto y = static_cast<double>(v.y_m);
-      if (x * x + y * y > far_m * far_m) continue;
-      const Vec2 at{in.pose.x_m + c * x - s * y, in.pose.y_m + s * x + c * y};
-      const Cell cell = cell_at(at);
-      points_.push_back(at);
-      of_.push_back(cell);
-      Place& p = place(cell.x, cell.y);
-      if (p.piece == piece_) continue;
-      const bool anew = now_s_ - static_cast<double>(p.last_s) > kGap_s;
-      if (anew) p.was_free = before.at(at.x, at.y, in.stamp) == Known::Free;
-      p.piece = piece_;
-      if (kind == Kind::Passing) {  // never a thing by itself, nor still
-        p.thing = still_about(cell.x, cell.y) ? -1 : 0;
-        continue;
-      }
-      if (anew) p.first_s = static_cast<float>(now_s_);
-      p.last_s = static_cast<float>(now_s_);
-      p.thing = -1;
-      cells_.push_back(cell);
-    }
-  }
-  std::erase_if(cells_, [this](const Cell& cell) { return still_about(cell.x, cell.y); });
-  for (const Cell& cell : cells_) place(cell.x, cell.y).thing = 0;
-}
-
-/// Things are numbered from 1.
-void Movers::part() {
-  things_.clear();
-  for (const Cell& first : cells_) {
-    if (place(first.x, first.y).thing != 0 || things_.size() >= kThings) continue;
-    things_.emplace_back();
-    const auto number = static_cast<std::int32_t>(things_.size());
-    place(first.x, first.y).thing = number;
-    open_.assign(1, first);
-    while (!open_.empty()) {
-      const Cell at = open_.back();
-      open_.pop_back();
-      for (std::int32_t y = at.y - kHangs; y <= at.y + kHangs; ++y) {
-        for (std::int32_t x = at.x - kHangs; x <= at.x + kHangs; ++x) {
-          Place& p = place(x, y);
-          if (p.piece != piece_ || p.thing != 0) continue;
-          p.thing = number;
-          // What is held back belongs to whom it lies beside, and joins nobody to anything.
-          if (p.last_s == static_cast<float>(now_s_)) open_.push_back({x, y});
-        }
-      }
-    }
-  }
-  spread_.resize(std::max(spread_.size(), things_.size()));
-  for (auto& some : spread_) some.clear();
-  // What is held back at edges would bend his way; of who walks in dust it is the most of him.
-  const bool weather = points_.size() - believed_ >= kWeather;
-  parts_.assign(things_.size(), {});
-  const auto thing_of = [this](std::size_t i) { return place(of_[i].x, of_[i].y).thing; };
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    const std::int32_t number = thing_of(i);
-    if (number <= 0) continue;
-    Parts& of = parts_[static_cast<std::size_t>(number - 1)];
-    ++(i < believed_ ? of.believed : of.held_back);
-  }
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    const std::int32_t number = thing_of(i);
-    if (number <= 0) continue;
-    const auto thing = static_cast<std::size_t>(number - 1);
-    if (i >= believed_ && (!weather || !parts_[thing].half_hidden())) continue;
-    Box& b = things_[thing];
-    const Vec2 p = points_[i];
-    b = {std::min(b.x0, p.x), std::max(b.x1, p.x), std::min(b.y0, p.y), std::max(b.y1, p.y),
-         b.points + 1};
-    spread_[thing].push_back(p);
-  }
 }
 
 void Movers::meet(const Reduced& in, const Grid& before) {
   met_ = false;
-  if (!begun_) {
-    begun_ = true;
-    begin_ = in.stamp;
-  }
+  const bool first = !begun_;
+  if (first) begin_ = in.stamp;
+  begun_ = true;
   const double now_s = base::seconds(in.stamp - begin_);
-  if (piece_ > 0 && now_s <= now_s_) return;  // out of order
+  if (!first && now_s <= now_s_) return;  // out of order
   now_s_ = now_s;
   // A float of seconds is a millisecond's after three hours: count from here on before.
   constexpr double kFromHere_s = 8192.0;
   if (now_s > kFromHere_s) count_from(in.stamp);
-  ++piece_;
   met_ = true;
   stamp_ = in.stamp;
   body_ = {in.pose.x_m, in.pose.y_m};
   const Pose2 eye = in.pose * Pose2{static_cast<double>(in.origin_m[0]),
                                     static_cast<double>(in.origin_m[1]), 0.0};
   eye_ = {eye.x_m, eye.y_m};
-  gather(in, before);
-  part();
+  told_.clear();
+  for (const Track& t : tracks_) {
+    if (t.moves) told_.push_back(t.box.mid() + (now_s_ - t.seen_s) * t.v);
+  }
+  things_.meet(in, before, now_s_, told_);
 }
 
 void Movers::see(const Grid& grid, std::span<const Mover> others) {
@@ -197,10 +73,7 @@ void Movers::see(const Grid& grid, std::span<const Mover> others) {
 /// Nobody is forgotten by it. @param begin the piece that is taken now
 void Movers::count_from(base::Time begin) {
   const double by_s = now_s_;
-  for (Place& p : places_) {
-    p.first_s = static_cast<float>(static_cast<double>(p.first_s) - by_s);
-    p.last_s = static_cast<float>(static_cast<double>(p.last_s) - by_s);
-  }
+  things_.count_from(by_s);
   for (Track& t : tracks_) {
     t.seen_s -= by_s;
     t.agreed_s -= by_s;
@@ -215,10 +88,8 @@ void Movers::follow(const Grid& grid, std::span<const Mover> others) {
   std::erase_if(tracks_, [this](const Track& t) { return now_s_ - t.seen_s > kLost_s; });
   const std::size_t known = tracks_.size();
   for (std::size_t i = 0; i < things_.size(); ++i) {
-    const Box& box = things_[i];
-    if (box.points < kFewVoxels || box.x1 - box.x0 > kWidest_m || box.y1 - box.y0 > kWidest_m) {
-      continue;
-    }
+    const Box& box = things_.box(i);
+    if (box.points < kFewVoxels || box.wide()) continue;
     const Vec2 mid = box.mid();
     Track* best = nullptr;
     double least = 1e9;
@@ -233,7 +104,7 @@ void Movers::follow(const Grid& grid, std::span<const Mover> others) {
       least = away;
     }
     if (best == nullptr) {
-      if (tracks_.size() >= kThings) continue;
+      if (tracks_.size() >= kTracks) continue;
       best = &tracks_.emplace_back();
     }
     best->seen_s = now_s_;
@@ -243,12 +114,11 @@ void Movers::follow(const Grid& grid, std::span<const Mover> others) {
     Sample sample;
     sample.at_s = now_s_;
     sample.box = box;
-    const auto& some = spread_[i];
+    const auto some = things_.points(i);
     for (std::size_t k = 0; k < std::min(kSpread, some.size()); ++k) {
       const Vec2 p = some[k * some.size() / std::min(kSpread, some.size())];
       sample.points[sample.size] = p;
-      const Cell cell = cell_at(p);
-      sample.was_free[sample.size++] = place(cell.x, cell.y).was_free;
+      sample.was_free[sample.size++] = things_.was_free(p);
     }
     best->samples.push_back(sample);
     estimate(*best, grid);
@@ -263,19 +133,17 @@ void Movers::follow(const Grid& grid, std::span<const Mover> others) {
   }
 }
 
-/// Not in the box, nor near its sides.
-bool Movers::Box::leaves_out(Vec2 p) const noexcept {
-  return p.x <= x0 - kLeft_m || p.x >= x1 + kLeft_m || p.y <= y0 - kLeft_m || p.y >= y1 + kLeft_m;
-}
-
 /// Where it was and is not any more, rays went through. Or nobody looked there since: it lies
 /// behind him as the sensor sees him, or beside, for a body hides more than the part of it that is
-/// met; and he came onto free places.
+/// met; and he came onto free places, or is plainly somebody.
 bool Movers::left_free(const Track& track, const Grid& grid) const {
   const Box& b = track.box;
   const Vec2 to = b.mid() - eye_;
   const double away = std::max(0.01, std::hypot(to.x, to.y));
-  const double half = 0.5 * std::hypot(b.x1 - b.x0, b.y1 - b.y0) + kLeft_m;
+  const double half = 0.5 * std::hypot(b.x1 - b.x0, b.y1 - b.y0) + Box::kLeft_m;
+  const double fast = std::hypot(track.v.x, track.v.y);
+  const bool body = !planar_ && b.points >= kBody;
+  const bool hides = planar_ || (body && dot(track.v, to) < -kAtTheEye * fast * away);
   int left = 0;
   int free = 0;
   int hidden = 0;
@@ -285,12 +153,14 @@ bool Movers::left_free(const Track& track, const Grid& grid) const {
       if (!b.leaves_out(p)) continue;
       const Vec2 off = p - eye_;
       const double beyond = dot(off, to) / away;
-      if (planar_ && beyond > away && std::abs(cross(to, off)) / away < half * beyond / away) {
+      if (hides && beyond > away && std::abs(cross(to, off)) / away < half * beyond / away) {
         ++hidden;
         continue;
       }
-      const bool is_free = grid.at(p.x, p.y, stamp_) == Known::Free;
-      if (planar_ && !is_free && !met_lately(p)) {
+      const Known now = grid.at(p.x, p.y, stamp_);
+      // A cloud that looks over what is low says only that what stood there is there no more.
+      const bool is_free = now == Known::Free || (body && now == Known::Unknown);
+      if (hides && !is_free && !(planar_ ? things_.met_lately(p) : things_.met_now(p))) {
         ++hidden;
         continue;
       }
@@ -298,7 +168,18 @@ bool Movers::left_free(const Track& track, const Grid& grid) const {
       if (is_free) ++free;
     }
   }
-  return left >= 2 ? 2 * free > left : hidden >= 2 && came_onto_free(track);
+  if (left >= 2) return 2 * free > left;
+  if (hidden >= 2 && came_onto_free(track)) return true;
+  return hides && left == free && is_somebody(track);
+}
+
+/// Of a cloud: a body of somebody's size, of many voxels, that has gone steadily for half of its
+/// own size. The ground about a lidar is not seen, and so it is not known what he came onto.
+bool Movers::is_somebody(const Track& track) const noexcept {
+  const Box& b = track.box;
+  const Vec2 gone = track.samples.back().box.mid() - track.samples.front().box.mid();
+  return !planar_ && b.points >= kManyVoxels && track.sigma < kSteady_mps &&
+         std::max(b.x1 - b.x0, b.y1 - b.y0) < kSomebody_m && std::hypot(gone.x, gone.y) > kGone_m;
 }
 
 /// Most of where he is and was not before. What comes into sight was hidden, not free.
@@ -360,7 +241,10 @@ void Movers::estimate(Track& track, const Grid& grid) const {
     if (track.moving <= 0) track.moves = false;
     return;
   }
-  const bool goes = sure > kLeast_mps + 2.0 * std::min(track.sigma, 0.5) && left_free(track, grid);
+  const double beyond_mps = kLeast_mps + 2.0 * std::min(track.sigma, 0.5);
+  const bool fast_enough =
+      sure > beyond_mps || (sure > kLeast_mps && fast > beyond_mps && is_somebody(track));
+  const bool goes = fast_enough && left_free(track, grid);
   track.moving = goes ? track.moving + 1 : 0;
   if (track.moving < 2) return;
   track.moves = true;
