@@ -20,11 +20,13 @@ constexpr std::size_t kTracks = 64;
 constexpr std::size_t kSpread = 4;
 constexpr double kWindow_s = 0.7;
 constexpr double kEvery_s = 0.035;
+constexpr double kBefore_s = 2.5;
+constexpr double kBeforeEvery_s = 0.2;
 constexpr double kSpan_s = 0.25;
 constexpr std::size_t kSamples = 4;  // at least
 constexpr double kGate_m = 0.35;
 constexpr double kGate_mps = 1.5;
-constexpr double kNoMore_mps = 0.15;
+constexpr double kNoMore_mps = 0.1;
 constexpr double kAgree_mps = 0.3;  // else one side is hidden, or comes into sight
 constexpr double kTakenOver_mps = 0.15;
 constexpr double kGlance_s = 0.1;
@@ -78,6 +80,7 @@ void Movers::count_from(base::Time begin) {
     t.seen_s -= by_s;
     t.agreed_s -= by_s;
     for (Sample& s : t.samples) s.at_s -= by_s;
+    for (Sample& s : t.before) s.at_s -= by_s;
   }
   begin_ = begin;
   now_s_ = 0.0;
@@ -110,7 +113,7 @@ void Movers::follow(const Grid& grid, std::span<const Mover> others) {
     best->seen_s = now_s_;
     best->box = box;
     if (!best->samples.empty() && now_s_ - best->samples.back().at_s < kEvery_s) continue;
-    std::erase_if(best->samples, [this](const Sample& s) { return now_s_ - s.at_s > kWindow_s; });
+    keep(*best);
     Sample sample;
     sample.at_s = now_s_;
     sample.box = box;
@@ -133,6 +136,18 @@ void Movers::follow(const Grid& grid, std::span<const Mover> others) {
   }
 }
 
+/// What is too old for a line; but of who creeps, it is seen by that alone what he left.
+void Movers::keep(Track& track) const {
+  const auto& samples = track.samples;
+  auto& before = track.before;
+  std::erase_if(before, [this](const Sample& s) { return now_s_ - s.at_s > kBefore_s; });
+  const bool next = before.empty() || samples.front().at_s - before.back().at_s > kBeforeEvery_s;
+  if (!samples.empty() && now_s_ - samples.front().at_s > kWindow_s && next) {
+    before.push_back(samples.front());
+  }
+  std::erase_if(track.samples, [this](const Sample& s) { return now_s_ - s.at_s > kWindow_s; });
+}
+
 /// Where it was and is not any more, rays went through. Or nobody looked there since: it lies
 /// behind him as the sensor sees him, or beside, for a body hides more than the part of it that is
 /// met; and he came onto free places, or is plainly somebody.
@@ -147,7 +162,7 @@ bool Movers::left_free(const Track& track, const Grid& grid) const {
   int left = 0;
   int free = 0;
   int hidden = 0;
-  for (const Sample& s : track.samples) {
+  const auto count = [&](const Sample& s) {
     for (std::size_t k = 0; k < s.size; ++k) {
       const Vec2 p = s.points[k];
       if (!b.leaves_out(p)) continue;
@@ -167,7 +182,9 @@ bool Movers::left_free(const Track& track, const Grid& grid) const {
       ++left;
       if (is_free) ++free;
     }
-  }
+  };
+  std::ranges::for_each(track.before, count);
+  std::ranges::for_each(track.samples, count);
   if (left >= 2) return 2 * free > left;
   if (hidden >= 2 && came_onto_free(track)) return true;
   return hides && left == free && is_somebody(track);

@@ -47,7 +47,7 @@ struct Mover {
 
 class Movers {
  public:
-  static constexpr double kLeast_mps = 0.3;  ///< slower, it stands
+  static constexpr double kLeast_mps = 0.2;  ///< slower, it stands
   static constexpr double kLost_s = 0.5;     ///< not seen for so long, he is forgotten
   static constexpr std::size_t kMost = 8;    ///< told at most, the nearest to the body
 
@@ -73,6 +73,7 @@ class Movers {
   };
   struct Track {
     std::vector<Sample> samples;  ///< the oldest first
+    std::vector<Sample> before;   ///< some of those that are too old for a line
     Box box;
     Vec2 v{};
     double sigma = 0.0;
@@ -85,6 +86,7 @@ class Movers {
   void count_from(base::Time begin);
   void follow(const Grid& grid, std::span<const Mover> others);
   const Mover* seen_elsewhere(const Track& track, std::span<const Mover> others) const noexcept;
+  void keep(Track& track) const;
   void estimate(Track& track, const Grid& grid) const;
   bool left_free(const Track& track, const Grid& grid) const;
   bool is_somebody(const Track& track) const noexcept;

@@ -156,7 +156,7 @@ TEST(MoversOfClouds, WhoComesThroughAGateIsToldBeforeHeIsThere) {
                                    post(4.0, 0.4), post(4.0, -0.4)};
               },
               {.seed = seed});
-    EXPECT_LT(first_told(seen) - kStands_s, 2.1) << seed;
+    EXPECT_LT(first_told(seen) - kStands_s, 1.6) << seed;
     EXPECT_GE(first_told(seen), kStands_s) << seed;
   }
 }
@@ -186,7 +186,9 @@ TEST(MoversOfClouds, WhatStandsIsNotTakenForACrowdWhileTheOdometrySlips) {
   };
   const auto slips = [](double t) { return Pose2{0.45 * std::clamp(t - 3.0, 0.0, 1.0), 0.0, 0.0}; };
   const auto seen = watch(lidar(), 5.0, stands, yard, {.odometry = slips});
-  EXPECT_LE(pieces_told(seen), 8U);
+  std::size_t most = 0;
+  for (const auto& piece : seen) most = std::max(most, piece.size());
+  EXPECT_LE(most, 1U);
 }
 
 //   Past walls, boxes of all heights and posts, before and behind gaps: straight on, in a turn,

@@ -116,6 +116,25 @@ TEST(Movers, WhoCrossesIsToldWithHisVelocityWithinASecond) {
   }
 }
 
+//   An animal that sniffs its way along, straight on or at the robot. In 0.7 s it leaves hardly a
+//   place.
+TEST(Movers, WhoCreepsIsToldToo) {
+  for (const double fast_mps : {0.3, 0.4}) {
+    for (const double aside : {0.0, 0.6, 1.0}) {
+      const auto seen = watch(4.0, stands, [&](double t) {
+        const double x = 2.2 - aside * fast_mps * t;
+        const double y = -1.5 + std::sqrt(1.0 - aside * aside) * fast_mps * t;
+        return std::vector<Block>{{x - 0.15, x + 0.15, y - 0.1, y + 0.1, -0.2, 0.5}};
+      });
+      const auto first = std::ranges::find_if(seen, [](const auto& s) { return !s.empty(); });
+      EXPECT_LT(0.04 * double(first - seen.begin()), 2.0) << fast_mps << " m/s, " << aside;
+      ASSERT_EQ(seen.back().size(), 1U) << fast_mps << " m/s, " << aside;
+      EXPECT_NEAR(seen.back().front().v_mps.x, -aside * fast_mps, 0.12);
+      EXPECT_NEAR(seen.back().front().v_mps.y, std::sqrt(1.0 - aside * aside) * fast_mps, 0.12);
+    }
+  }
+}
+
 TEST(Movers, WhoComesStraightAtTheSensorIsToldThoughHeHidesWhereHeWas) {
   const auto seen =
       watch(2.0, stands, [](double t) { return std::vector{person(5.5 - 1.2 * t, 0.3)}; });
